@@ -49,7 +49,7 @@ class NoEquilibrium(unittest.TestCase):
 
     def test_box_pushed_beyond_the_slip_bound(self):
         case = scenes.box(tractions={'pushed': PUSHED, 'weight': WEIGHT}, contacts={'circle': GIVING})
-        self.refused(case, 'body box')
+        self.refused(case, 'body box', ranks=(1, 3))
 
     def test_blocks_pushed_along_floors_of_nearly_one_direction(self):
         """The proof settled while normal forces on the tilted parts of the floor still grew: status 3 after 813 and 1446
@@ -70,11 +70,11 @@ class NoEquilibrium(unittest.TestCase):
 
     def test_body_on_rollers(self):
         case = scenes.box(supports={'roller': ROLLER}, tractions={'weight': WEIGHT})
-        self.refused(case, 'nothing holds body box', 'translation along (')
+        self.refused(case, 'nothing holds body box', 'translation along (', ranks=(1, 3))
 
     def test_body_on_rollers_under_metis(self):
         case = scenes.box(supports={'roller': ROLLER}, tractions={'weight': WEIGHT})
-        self.refused(case, 'nothing holds body box', 'translation along (', overrides=METIS, ranks=(2, 3))
+        self.refused(case, 'nothing holds body box', 'translation along (', overrides=METIS, ranks=(2,))
 
     def test_check_finds_the_free_body_and_writes_nothing(self):
         case = scenes.box(supports={'roller': ROLLER}, tractions={'weight': WEIGHT})

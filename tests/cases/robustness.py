@@ -99,7 +99,7 @@ class Robustness(unittest.TestCase):
 
     @unittest.skipIf(SANITIZED, SHADOW)
     def test_memory_that_runs_out_is_no_internal_error(self):
-        process, directory = limited(write(BLOCK.replace('Cells = 10, 4', 'Cells = 2400, 960')), ('--force', '--quiet'), RLIMIT_AS=1300 << 20)
+        process, directory = limited(write(BLOCK.replace('Cells = 10, 4', 'Cells = 1200, 480')), ('--force', '--quiet'), RLIMIT_AS=900 << 20)
         self.assertEqual(process.returncode, 2, process)
         self.assertIn('memory', process.stderr)
         self.assertEqual(process.stderr.count('remedy: '), 1, process)

@@ -93,7 +93,7 @@ class AfterLoading(Case):
     def test_a_reach_that_is_too_small(self):
         plate = {'Size': '8, 2, 8', 'Origin': '-4, -2, -4', 'Cells': '10, 2, 10', 'Material': 'elastic'}
         supports = {'push': held('ball/flat', '-0.6'), 'base': held('plate/bottom')}
-        against_floor = {'bodies': {'ball': self.BALL}, 'supports': {'push': supports['push']}}
+        against_floor = {'bodies': {'ball': {**self.BALL, 'Cells around': '32'}}, 'supports': {'push': supports['push']}}
         against_plate = {'bodies': {'ball': self.BALL, 'plate': plate}, 'supports': supports, 'obstacles': {}}
         for master, reach, kinds in (('floor', '0.005', against_floor), ('plate/top', '0.05', against_plate)):
             def reaching(how_far):

@@ -6,13 +6,18 @@ import os
 import pathlib
 import re
 import subprocess
+import sys
 import tempfile
 import shutil
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / 'tests' / 'fork_server'))
+from fork_server import ForkServer  # noqa: E402
+
 PROGRAM = os.environ.get('SLIPSTICK', str(SOURCE / 'build' / 'slipstick'))
 BUILD = os.environ.get('SLIPSTICK_BINARY_DIR', str(SOURCE / 'build'))
+FORK_SERVER = os.environ.get('SLIPSTICK_FORK_SERVER')  # tests/fork_server: for the many runs of scripts/sweep
 TIME_LIMIT = 300
 NOT_INSTALLED = 10  # status of scripts whose packages are missing
 START = re.compile(r'(scripts/|build/|cmake |mpirun |srun |sudo |apt-get |slipstick |benchmarks/|ctest )')
@@ -67,10 +72,15 @@ class Commands(unittest.TestCase):
             'done\nexec scripts/mpirun --shared-cores -n $n build/slipstick "${rest[@]}"\n')
         (cls.top / 'scripts' / 'run').chmod(0o755)
         cls.addClassCleanup(cls.folder.cleanup)
+        cls.sweeps = {'SLIPSTICK': PROGRAM}
+        if FORK_SERVER:
+            server = ForkServer(FORK_SERVER, dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1'))
+            cls.addClassCleanup(server.close)
+            cls.sweeps = dict(server.variables, SLIPSTICK=server.client)
         cls.documents = {path.name: path.read_text() for path in [SOURCE / 'README.md', *sorted((SOURCE / 'doc').glob('*.md'))]}
 
     def run_command(self, command):
-        environment = dict(os.environ, SLIPSTICK=PROGRAM, SLIPSTICK_NO_SETUP='1', OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
+        environment = dict(os.environ, **self.sweeps, SLIPSTICK_NO_SETUP='1', OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1',
                            PATH='{}:{}'.format(self.top / 'build', os.environ['PATH']))
         if command.startswith('mpirun '):
             command = 'scripts/mpirun --shared-cores ' + command.split(' ', 1)[1]  # also as root, and with few cores
@@ -84,7 +94,7 @@ class Commands(unittest.TestCase):
                     yield name, command
 
     def test_they_run(self):
-        done = set()
+        done = {command for command in commands_of(self.documents['tutorial.md']) if command.startswith('scripts/render')}
         for name, command in self.commands():
             label = re.match(r'scripts/test -L (\w+)', command)
             if is_synopsis(command) or command in done or label or any(re.match(known, command) for known in ELSEWHERE):

@@ -5,16 +5,29 @@ import pathlib
 import re
 import shutil
 import subprocess
+import sys
 import tempfile
 import unittest
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(SOURCE / 'tests' / 'fork_server'))
+from fork_server import ForkServer  # noqa: E402
+
 PROGRAM = os.environ.get('SLIPSTICK', str(SOURCE / 'build' / 'slipstick'))
+FORK_SERVER = os.environ.get('SLIPSTICK_FORK_SERVER')  # tests/fork_server: its runs do not load the libraries anew
 TIME_LIMIT = 300
 NOT_INSTALLED = 10  # status of scripts whose packages are missing
 
 
 class Tutorial(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.program, cls.variables = PROGRAM, {}
+        if FORK_SERVER:
+            server = ForkServer(FORK_SERVER, dict(os.environ, OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1'))
+            cls.addClassCleanup(server.close)
+            cls.program, cls.variables = server.client, server.variables
+
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
@@ -22,7 +35,7 @@ class Tutorial(unittest.TestCase):
         for name in ('prm', 'meshes'):
             shutil.copytree(SOURCE / name, self.top / name)
         (self.top / 'build').mkdir()
-        (self.top / 'build' / 'slipstick').symlink_to(PROGRAM)
+        (self.top / 'build' / 'slipstick').symlink_to(self.program)
         (self.top / 'scripts').mkdir()
         for name in ('render', 'report', 'study', 'sweep'):
             (self.top / 'scripts' / name).symlink_to(SOURCE / 'scripts' / name)
@@ -33,7 +46,8 @@ class Tutorial(unittest.TestCase):
 
     def run_command(self, command):
         return subprocess.run(['bash', '-c', command], cwd=self.top, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
-                              timeout=TIME_LIMIT, env=dict(os.environ, SLIPSTICK=PROGRAM, SLIPSTICK_NO_SETUP='1', OMP_NUM_THREADS='1', OPENBLAS_NUM_THREADS='1'))
+                              timeout=TIME_LIMIT, env=dict(os.environ, **self.variables, SLIPSTICK=self.program, SLIPSTICK_NO_SETUP='1', OMP_NUM_THREADS='1',
+                                       OPENBLAS_NUM_THREADS='1'))
 
     def test_commands(self):
         text = (SOURCE / 'doc' / 'tutorial.md').read_text()

@@ -1,15 +1,18 @@
 """Linear elasticity against a manufactured solution: observed rates of both degrees in the energy norm and at the nodes."""
 
+import functools
 import unittest
 
 import measured
 from energy import rate
 
+manufactured = functools.lru_cache(maxsize=None)(measured.manufactured)
+
 
 class Bulk(unittest.TestCase):
 
     def rates(self, degree, plane_state, energy_rate, nodal_rate):
-        errors = [measured.manufactured(cells, degree, plane_state) for cells in (8, 16, 32)]
+        errors = [manufactured(cells, degree, plane_state) for cells in (8, 16, 32)]
         for coarse, fine in zip(errors, errors[1:]):
             self.assertGreaterEqual(rate(coarse['energy_error'], fine['energy_error']), energy_rate)
             self.assertGreaterEqual(rate(coarse['nodal_error'], fine['nodal_error']), nodal_rate)
@@ -25,7 +28,7 @@ class Bulk(unittest.TestCase):
 
     def test_the_norm_sees_a_wrong_displacement(self):
         """Degree 1 is far from the quadratic field: this checks the check."""
-        one, two = (measured.manufactured(8, degree) for degree in (1, 2))
+        one, two = (manufactured(8, degree, 'plane strain') for degree in (1, 2))
         self.assertGreater(one['energy_error'], 5 * two['energy_error'])
         self.assertGreater(one['energy_error'], 0.1)
 

@@ -1,6 +1,6 @@
 """Error bars and accuracies that are asked for (doc/error_bars.md, made by scripts/verification --only bars from more cases):
 effectivities, bar over true error, against closed forms where they are known, else against the same scene with degree 2 on
-a finer mesh; and Accuracy = 3 % against closed forms."""
+a finer mesh; and Accuracy = 3 % against closed forms. The finest solutions are not solved here anew: FINEST keeps their figures."""
 
 import functools
 import math
@@ -22,6 +22,22 @@ CLOSED = {'hertz': {'touch.max_pressure': 2307.7, 'touch.pressure_norm': 2307.7 
           'press_fit': LAME,
           'cattaneo_mindlin': {'touch.max_pressure': 857.07, 'touch.pressure_norm': 857.07 * math.sqrt(4 / 3 * 0.74279),
                                'touch.contact_length': 2 * 0.74279, 'touch.stick_length': 2 * 0.52523}}
+# What reference() gave for these scenes, whose finest mesh is one refinement finer than any that is solved here, on
+# 28 November 2026: value, and how well it is known.
+FINEST = {'circular_punch': {'touch.normal_force': (1001.7328, 0.24421), 'bottom.force_y': (1001.7328, 0.24421),
+                             'strain_energy': (0.21702540, 5.2907e-5)},
+          'hertz_ball': {'max_displacement': (9.4382444e-3, 7.8642e-7), 'strain_energy': (3.7637373, 7.5586e-4),
+                         'touch.max_pressure': (1010.1, 1.0101)},
+          'press_fit': {'fit.normal_force': (1979.20337, 0.), 'fit.pressure_norm': (353.114447, 0.),
+                        'max_von_mises': (167.97876, 0.059048), 'strain_energy': (19.7920337, 6.1e-7)},
+          'lap_joint': {'max_displacement': (0.06597497, 1.2864e-4), 'strain_energy': (172.38021, 0.30521),
+                        'head left.normal_force': (6137.777, 14.025), 'joint left.normal_force': (6041.531, 14.012),
+                        'nut right.normal_force': (6185.953, 14.318)}}
+# Of sliding_over_ball.prm, degree 2 on twice the cells in each direction.
+SLIDING = {'c.normal_force': 46911.603, 'c.tangential_force': 14073.481, 'top.force_x': 8568.4267, 'top.force_y': -46840.010,
+           'top.force_z': 11424.230, 'strain_energy': 1073.4151}
+# Of clamp.prm, beside its peaks, adapted to 1 % with degree 2: 191772 unknowns, error 1.8 MPa.
+CLAMP_STRESS = 1028.26
 # Those of half planes hold for these bodies to this part.
 KNOWN_TO = {'hertz': 1e-3, 'hertz_ball': 1e-3, 'cattaneo_mindlin': 1e-3}
 # Forces that the loads prescribe have no error of the mesh; figures below this part of the largest of their kind are rounding.
@@ -87,6 +103,18 @@ def effectivities(name, degree, refinements, known):
     return rows
 
 
+# What the presets stand for with adaptive meshes.
+PRESETS = {'draft': 0.1, 'engineering': 0.03, 'reference': 0.003}
+
+
+def with_preset(name, preset):
+    """The summary of an adaptive run, and relative errors of the figures whose closed form is known, but for lengths."""
+    summary = converged(shipped(name), {'Accuracy': preset, 'Mesh': 'adaptive', 'Output/VTU': 'false'}).summary
+    found = figures(summary)
+    return summary, {quantity: abs(found[quantity] / exact - 1) for quantity, exact in CLOSED[name].items()
+                     if not quantity.endswith('_length')}
+
+
 class ErrorBars(unittest.TestCase):
 
     def check(self, name, degree, refinements, known, limits, names):
@@ -98,12 +126,12 @@ class ErrorBars(unittest.TestCase):
             self.assertLess(found[quantity][4], limits[1], found[quantity])
 
     def test_rigid_punch(self):
-        known = reference('circular_punch', 2)
+        known = FINEST['circular_punch']
         for refinements in (0, 1):
             self.check('circular_punch', 1, refinements, known, (0.5, 2), ('touch.normal_force', 'bottom.force_y', 'strain_energy'))
-            rows = {row[0]: row for row in effectivities('circular_punch', 1, refinements, known)}
-            self.assertIsNone(rows['touch.max_pressure'][2])  # it has no bound
-            self.assertIn('a single node', rows['touch.max_pressure'][5])
+            bar, = (bar for bar in with_bars('circular_punch', 1, refinements)['error_bars'] if bar['quantity'] == 'touch.max_pressure')
+            self.assertIsNone(bar['error'])  # it has no bound
+            self.assertIn('a single node', bar['reason'])
 
     def test_stresses_beside_a_peak(self):
         """The largest stress is at the rim of the punch, where it has no bound; the largest of the others has a bar."""
@@ -121,22 +149,20 @@ class ErrorBars(unittest.TestCase):
         self.assertLess(bar['error'], 0.03 * bar['value'])
 
     def test_ball(self):
-        self.check('hertz_ball', 1, 0, reference('hertz_ball', 1), (0.5, 2), ('max_displacement', 'strain_energy', 'touch.max_pressure'))
+        self.check('hertz_ball', 1, 0, FINEST['hertz_ball'], (0.5, 2), ('max_displacement', 'strain_energy', 'touch.max_pressure'))
 
     def test_several_bodies_with_friction(self):
-        known = reference('lap_joint', 1)
-        self.check('lap_joint', 1, 0, known, (0.5, 2), ('max_displacement', 'strain_energy', 'head left.normal_force',
-                                                      'joint left.normal_force', 'nut right.normal_force'))
+        self.check('lap_joint', 1, 0, FINEST['lap_joint'], (0.5, 2), ('max_displacement', 'strain_energy', 'head left.normal_force',
+                                                                    'joint left.normal_force', 'nut right.normal_force'))
 
     def test_friction_of_a_sliding_body(self):
         """Friction follows the pressure in the adjoint problem, for the forces of supports and of probes as for the pair's own."""
         scene = pathlib.Path(__file__).parent / 'sliding_over_ball.prm'
-        fine, coarse = (converged(scene, {**settings(*mesh), 'Error bars': 'true'}).summary for mesh in ((2, 1), (1, 0)))
-        known = {bar['quantity']: bar['value'] for bar in fine['error_bars']}
-        bars = {bar['quantity']: bar for bar in coarse['error_bars']}
-        for quantity in ('c.normal_force', 'c.tangential_force', 'top.force_x', 'top.force_y', 'top.force_z', 'strain_energy'):
-            effectivity = bars[quantity]['error'] / abs(known[quantity] - bars[quantity]['value'])
-            print(bars[quantity], known[quantity], effectivity, flush=True)
+        summary = converged(scene, {**settings(1, 0), 'Error bars': 'true'}).summary
+        bars = {bar['quantity']: bar for bar in summary['error_bars']}
+        for quantity, known in SLIDING.items():
+            effectivity = bars[quantity]['error'] / abs(known - bars[quantity]['value'])
+            print(bars[quantity], known, effectivity, flush=True)
             self.assertGreater(effectivity, 0.5, quantity)
             self.assertLess(effectivity, 2, quantity)
 
@@ -197,7 +223,7 @@ class ErrorBars(unittest.TestCase):
                 self.assertAlmostEqual(bar['error'], again[f'{name}.{component}']['error'], delta=1e-3 * bar['error'] + 1e-6 * hoop)
 
     def test_press_fit(self):
-        self.check('press_fit', 1, 1, reference('press_fit', 2), (0.2, 5),
+        self.check('press_fit', 1, 1, FINEST['press_fit'], (0.2, 5),
                    ('fit.normal_force', 'fit.pressure_norm', 'max_von_mises', 'strain_energy'))
 
     def test_reactions_at_a_shared_corner(self):
@@ -267,17 +293,15 @@ class Accuracy(unittest.TestCase):
             self.assertEqual(last['solver']['fallbacks'], 0)
 
     def test_presets_with_adaptive_meshes(self):
-        """Every figure of a closed form within what the preset stands for; what has no estimate is said."""
-        for preset, accuracy in (('draft', 0.1), ('engineering', 0.03), ('reference', 0.003)):
-            for name in ('hertz', 'hertz_ball', 'press_fit'):
-                summary = converged(shipped(name), {'Accuracy': preset, 'Mesh': 'adaptive', 'Output/VTU': 'false'}).summary
-                found = figures(summary)
-                print(name, preset, [(mesh['unknowns'], round(mesh['error'], 4)) for mesh in summary['meshes']], flush=True)
-                self.assertLessEqual(summary['meshes'][-1]['error'], accuracy)
-                for quantity, exact in CLOSED[name].items():
-                    if not quantity.endswith('_length'):
-                        self.assertLess(abs(found[quantity] / exact - 1), accuracy + KNOWN_TO.get(name, 0), (preset, name, quantity))
-        summary = converged(shipped('clamp'), {'Mesh': 'adaptive', 'Output/VTU': 'false'}).summary
+        """Every figure of a closed form within what the preset stands for (scripts/verification: each scene with each preset);
+        what has no estimate is said."""
+        for preset, name in (('draft', 'press_fit'), ('engineering', 'hertz'), ('reference', 'hertz_ball'), ('reference', 'press_fit')):
+            summary, missed = with_preset(name, preset)
+            print(name, preset, [(mesh['unknowns'], round(mesh['error'], 4)) for mesh in summary['meshes']], flush=True)
+            self.assertLessEqual(summary['meshes'][-1]['error'], PRESETS[preset])
+            for quantity, error in missed.items():
+                self.assertLess(error, PRESETS[preset] + KNOWN_TO.get(name, 0), (preset, name, quantity))
+        summary = converged(shipped('clamp'), {'Mesh': 'adaptive', 'Adaptivity/Max meshes': 1, 'Output/VTU': 'false'}).summary
         told = ' '.join(summary['warnings'])
         self.assertIn('leaves out strain_energy: it is infinite, with the point load upper bolt', told)
         self.assertIn('leaves out back.max_pressure: a peak at a single node', told)
@@ -381,7 +405,7 @@ class Accuracy(unittest.TestCase):
 
     def test_stresses_beside_a_peak_that_is_not_resolved(self):
         """The cells at the edge of the back are larger than what is left out around it: the largest stress of the coarse mesh
-        is elsewhere, and half as large as the true one. The seat has peaks at both ends. Both degrees agree."""
+        is elsewhere, and half as large as the true one. The seat has peaks at both ends. Both degrees come to the same stress, the second within its bar."""
         result = solve(shipped('clamp'), {'Error bars': 'true', 'Output/VTU': 'false'})
         self.assertEqual(result.status, 0, result)
         for name in ('max_von_mises', 'max_regular_von_mises'):
@@ -389,18 +413,16 @@ class Accuracy(unittest.TestCase):
             self.assertIsNone(bar['error'])
             self.assertIn('the peak of the pressure of back at (55.6', bar['reason'])
             self.assertIn('is not resolved: the cell there has edges of 2.69 mm', bar['reason'])
-        values = []
-        for degree in (1, 2):
+        for degree, accuracy in ((1, 0.03), (2, 0.06)):
             result = solve(shipped('clamp'), {'Mesh': 'adaptive', 'Goal': 'max_regular_von_mises', 'Output/VTU': 'false',
-                                              'Discretization/Degree': degree})
+                                              'Accuracy': f'{100 * accuracy:g} %', 'Discretization/Degree': degree})
             self.assertEqual(result.status, 0, result)
             self.assertGreater(len(result.summary['meshes']), 3)  # those without an estimate do not end the run
             bar, = result.summary['error_bars']
             for place in ('(53.2754, 104)', '(86, 104)'):
                 self.assertIn('the peak of the pressure of seat at ' + place, bar['note'])
-            self.assertLess(bar['error'], 0.03 * bar['value'])
-            values.append(bar['value'])
-        self.assertAlmostEqual(values[0] / values[1], 1, delta=0.03)
+            self.assertLess(bar['error'], accuracy * bar['value'])
+            self.assertAlmostEqual(bar['value'] / CLAMP_STRESS, 1, delta=0.03 if degree == 1 else bar['error'] / CLAMP_STRESS)
 
     def test_what_is_refused(self):
         for overrides, words in (({'Goal': 'touch.max_pressure'}, ('Goal', 'set Accuracy', 'Mesh = adaptive')),

@@ -12,9 +12,9 @@ class CattaneoMindlin(unittest.TestCase):
     def test_traction_and_stick_zone(self):
         for share in (0.25, 0.75):  # scripts/verification: 0.5, too
             with self.subTest(share=share):
-                found = measured.cattaneo_mindlin(degree=2, share=share)
+                found = measured.cattaneo_mindlin(cells=20, degree=2, share=share)
                 self.assertLess(found['stick_error_elements'], 1, (found['stick'], found['c']))
-                if share > 0.25:  # there the ring that slips is 0.1 mm wide, four elements: scripts/verification refines
+                if share > 0.25:  # there the ring that slips is 0.1 mm wide, two elements: scripts/verification refines
                     self.assertLess(found['l2_error'], 0.02)
                 self.assertLess(abs(found['shear_error']), 1e-8)
 
@@ -24,7 +24,7 @@ class CattaneoMindlin(unittest.TestCase):
         self.assertLess(products[1], 0.8 * products[0], products)
 
     def test_stick_zone_with_bilinear_elements(self):
-        self.assertLess(measured.cattaneo_mindlin()['stick_error_elements'], 1)
+        self.assertLess(measured.cattaneo_mindlin(cells=20)['stick_error_elements'], 1)
 
     def test_two_cylinders_are_symmetric(self):
         """Nothing prefers a side but the mesh of the lower one. Along the slave's own normals they differ by 12 % of the largest."""
@@ -56,7 +56,7 @@ class Raous(unittest.TestCase):
             if x < 11:
                 self.assertLess(abs(found['u'][x] / value - 1), 0.005, x)
         self.assertLess(found['open'], 3.4)
-        self.assertLess(abs(found['slip'] - 28.75), 1.25)  # an element of the mesh of 32 x 32
+        self.assertLess(abs(found['slip'] - 28.75), 1.)  # published to the element of a coarser mesh
         self.assertLessEqual(abs(found['stick'] - 30), found['h'])
 
     def test_coarse_mesh_is_near(self):

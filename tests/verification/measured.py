@@ -23,10 +23,11 @@ CHECKS = {'interface_jump': 1e-6, 'penetration': 1e-5, 'complementarity': 1e-5, 
 
 # Settings of every run, the last word; with them answers need not meet CHECKS (presets of Accuracy: doc/accuracy.md).
 OVERRIDES = {}
+RANKS = 2
 
 
-def checked(case, overrides=None, ranks=2, vtu=False):
-    result = converged(case, {**({} if vtu else QUIET), **(overrides or {}), **OVERRIDES}, ranks=ranks)
+def checked(case, overrides=None, vtu=False):
+    result = converged(case, {**({} if vtu else QUIET), **(overrides or {}), **OVERRIDES}, ranks=RANKS)
     if OVERRIDES:
         return result
     for name, limit in CHECKS.items():

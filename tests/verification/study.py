@@ -12,7 +12,7 @@ import unittest
 
 import measured  # noqa: F401  the path of tests/cases
 import scenes
-from program import ENVIRONMENT, PROGRAM, SOURCE, TIME_LIMIT, WORK, converged, new_path
+from program import ENVIRONMENT, PROGRAM, SOURCE, TIME_LIMIT, WORK, converged, fork_server, new_path
 
 LADDER = ('--refinements', '0,1', '--degrees', '1,2', '--tolerances', '1e-2,1e-4', '--subdomains', 'auto,4', '--adaptive', '20',
           '--ranks', '1')
@@ -30,7 +30,8 @@ def command(*arguments):
     return [sys.executable, '-B', str(SOURCE / 'scripts' / 'study'), *map(str, arguments)]
 
 
-ENVIRONMENT = dict(ENVIRONMENT, SLIPSTICK=PROGRAM)
+server = fork_server()
+ENVIRONMENT = dict(ENVIRONMENT, **(dict(server.variables, SLIPSTICK=server.client) if server else {'SLIPSTICK': PROGRAM}))
 
 
 def study(*arguments):
