@@ -17,9 +17,6 @@ namespace slipstick::interface
     constexpr double below_surface = 1e-6;
 
     template <int dim>
-    using Tensor = dealii::Tensor<1, dim>;
-
-    template <int dim>
     struct Hit
     {
       double                  distance = 0; // along the ray [mm]
@@ -28,11 +25,11 @@ namespace slipstick::interface
 
     /// Where the ray from x along the unit vector n meets a piece from outside.
     std::optional<Hit<2>> meet(const dealii::Point<2>                &x,
-                               const Tensor<2>                       &n,
+                               const dealii::Tensor<1, 2>            &n,
                                const std::array<dealii::Point<2>, 2> &piece)
     {
-      const Tensor<2> along = piece[1] - piece[0], to = piece[0] - x;
-      const double    facing = cross(n, along); // normal of the piece times n, times its length
+      const dealii::Tensor<1, 2> along = piece[1] - piece[0], to = piece[0] - x;
+      const double               facing = cross(n, along); // normal of the piece times n, times its length
       if (facing >= 0)
         return {};
       const double s = cross(to, n) / facing;
@@ -42,15 +39,15 @@ namespace slipstick::interface
     }
 
     std::optional<Hit<3>> meet(const dealii::Point<3>                &x,
-                               const Tensor<3>                       &n,
+                               const dealii::Tensor<1, 3>            &n,
                                const std::array<dealii::Point<3>, 3> &piece)
     {
-      const Tensor<3> a = piece[1] - piece[0], b = piece[2] - piece[0], area = cross_product_3d(a, b);
-      const double    facing = n * area;
+      const dealii::Tensor<1, 3> a = piece[1] - piece[0], b = piece[2] - piece[0], area = cross_product_3d(a, b);
+      const double               facing = n * area;
       if (facing >= 0)
         return {};
-      const Tensor<3> to = x - piece[0], turned = cross_product_3d(to, n);
-      const double    s = b * turned / -facing, t = a * turned / facing;
+      const dealii::Tensor<1, 3> to = x - piece[0], turned = cross_product_3d(to, n);
+      const double               s = b * turned / -facing, t = a * turned / facing;
       if (s < 0 || t < 0 || s + t > 1)
         return {};
       return Hit<3>{-(to * area) / facing, {{1 - s - t, s, t}}};
@@ -71,7 +68,7 @@ namespace slipstick::interface
                                               const std::set<unsigned int>                    &exempt)
   {
     // the size of the body and displacements without their mean limit the length of the rays
-    Tensor<dim>                             mean;
+    dealii::Tensor<1, dim>                  mean;
     double                                  n_nodes = 0;
     std::vector<typename BoxTree<dim>::Box> boxes;
     const auto u = [&](const unsigned int e, const unsigned int i) { return now[e].node(i) - before[e].node(i); };

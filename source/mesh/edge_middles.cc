@@ -10,14 +10,14 @@ namespace slipstick::mesh
 {
   namespace
   {
-    using Piece  = MeshPiece<2>;
-    using Line   = Piece::Line;
-    using Tensor = dealii::Tensor<1, 2>;
+    using PlanePiece = MeshPiece<2>;
+    using Line       = PlanePiece::Line;
+    using Tensor     = dealii::Tensor<1, 2>;
 
     // The rise of an edge decreases by this part of the height of the cell above it.
     constexpr double decrease_of_rise = 0.3;
 
-    Tensor vertex(const Piece &piece, const Piece::Cell &cell, const unsigned int k)
+    Tensor vertex(const PlanePiece &piece, const PlanePiece::Cell &cell, const unsigned int k)
     {
       return Tensor(piece.vertices[corner<2>(cell, k)]);
     }
@@ -32,7 +32,7 @@ namespace slipstick::mesh
     }
 
     /// Least distance of the other corners of a cell from the chord of its edge @p f.
-    double height_above(const Piece &piece, const Piece::Cell &cell, const unsigned int f)
+    double height_above(const PlanePiece &piece, const PlanePiece::Cell &cell, const unsigned int f)
     {
       const Tensor start = vertex(piece, cell, f), along = vertex(piece, cell, f + 1) - start;
       double       height = std::numeric_limits<double>::max();
@@ -42,11 +42,11 @@ namespace slipstick::mesh
     }
 
     /// Jacobian of a cell with and without rises at @p u, @p v: from corner 0 towards the next and the previous corner.
-    std::array<double, 2> jacobians(const Piece       &piece,
-                                    const Piece::Cell &cell,
-                                    const Rises       &rises,
-                                    const double       u,
-                                    const double       v)
+    std::array<double, 2> jacobians(const PlanePiece       &piece,
+                                    const PlanePiece::Cell &cell,
+                                    const Rises            &rises,
+                                    const double            u,
+                                    const double            v)
     {
       const unsigned int n       = n_corners<2>(cell);
       const auto         x       = [&](const unsigned int k) { return vertex(piece, cell, k); };
@@ -71,7 +71,7 @@ namespace slipstick::mesh
       return {{cross(along_u, along_v), straight}};
     }
 
-    bool keeps_its_shape(const Piece &piece, const Piece::Cell &cell, const Rises &rises)
+    bool keeps_its_shape(const PlanePiece &piece, const PlanePiece::Cell &cell, const Rises &rises)
     {
       const bool is_triangle = is_simplex<2>(cell);
       for (const double u : {0., 0.5, 1.})
@@ -83,7 +83,7 @@ namespace slipstick::mesh
       return true;
     }
 
-    bool is_bent(const Piece::Cell &cell, const Rises &rises)
+    bool is_bent(const PlanePiece::Cell &cell, const Rises &rises)
     {
       for (unsigned int f = 0; f < n_corners<2>(cell); ++f)
         if (rises.count(face_of_cell<2>(cell, f)) > 0)
@@ -94,7 +94,7 @@ namespace slipstick::mesh
     /// Bends edges inside the body, from the largest rise to smaller ones. An edge of a cell takes the rise of another
     /// one, less a part of the height above that, as far as both run in one direction: rises are second derivatives.
     /// @param fixed edges that keep their rises.
-    void spread(const Piece &piece, const std::set<Line> &fixed, Rises &rises)
+    void spread_rises(const PlanePiece &piece, const std::set<Line> &fixed, Rises &rises)
     {
       std::map<Line, std::vector<unsigned int>>    cells_of;
       std::priority_queue<std::pair<double, Line>> queue;
@@ -158,7 +158,7 @@ namespace slipstick::mesh
 
   void bend_edges(MeshPiece<2> &piece)
   {
-    const auto line_of = [](const Piece::BoundaryFace &face) {
+    const auto line_of = [](const PlanePiece::BoundaryFace &face) {
       return Line{{std::min(face.vertices[0], face.vertices[1]), std::max(face.vertices[0], face.vertices[1])}};
     };
     const auto chord = [&piece](const Line &line) {
@@ -177,7 +177,7 @@ namespace slipstick::mesh
             rises[line_of(face)] = face.curve.point(0.5) - chord(line_of(face));
         if (rises.empty())
           return;
-        spread(piece, fixed, rises);
+        spread_rises(piece, fixed, rises);
         is_good = true;
         std::set<Line> spoilt;
         for (const auto &cell : piece.cells)

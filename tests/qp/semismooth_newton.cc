@@ -424,27 +424,22 @@ TEST(SemismoothNewton, large_coefficients_never_end_in_a_wrong_solution)
   EXPECT_GT(n_solved, 100u);
 }
 
-// Where the line search would cut steps to almost nothing, whole steps are taken: 265 of these 300 problems are solved
-// with them, 256 without.
-TEST(SemismoothNewton, whole_steps_solve_problems_where_the_line_search_fails)
+// 293 of these 300 problems are solved; 256 if residuals of slipping entries are their distances from the bound at the
+// present normal force, not from the cone.
+TEST(SemismoothNewton, high_friction_is_solved_by_distances_from_the_cone)
 {
-  const auto n_solved = [](const double largest_rise) {
-    NewtonOptions options;
-    options.largest_rise = largest_rise;
-    unsigned int n       = 0;
-    for (const double coefficient : {20., 50., 100.})
-      for (unsigned int seed = 0; seed < 100; ++seed)
-        {
-          const Contact p(seed, 6, {0., coefficient});
-          const auto    found = p.solve(p.set, options);
-          if (found.status != Status::converged)
-            continue;
-          ++n;
-          EXPECT_LT(p.violation(found.x), 1e-8) << coefficient << ", " << seed;
-        }
-    return n;
-  };
-  EXPECT_GE(n_solved(100), n_solved(0) + 5);
+  unsigned int n_solved = 0;
+  for (const double coefficient : {20., 50., 100.})
+    for (unsigned int seed = 0; seed < 100; ++seed)
+      {
+        const Contact p(seed, 6, {0., coefficient});
+        const auto    found = p.solve(p.set);
+        if (found.status != Status::converged)
+          continue;
+        ++n_solved;
+        EXPECT_LT(p.violation(found.x), 1e-8) << coefficient << ", " << seed;
+      }
+  EXPECT_GE(n_solved, 285);
 }
 
 TEST(SemismoothNewton, directions_of_an_earlier_solve_save_multiplications)

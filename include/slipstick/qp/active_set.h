@@ -64,6 +64,14 @@ namespace slipstick::qp
             if (bound.is_disc())
               bounded[bound.second] = true;
           }
+        for (const PressureBound &bound : set.pressure_bounds)
+          if (const double mu = bound.forces.coefficient; bound.normal != no_entry && mu > 0)
+            {
+              to_cone.resize(active.size(), 1.);
+              to_cone[bound.tangential] = 1 / std::sqrt(1 + mu * mu);
+              if (bound.is_disc())
+                to_cone[bound.second] = to_cone[bound.tangential];
+            }
         const bool jumps = std::any_of(set.pressure_bounds.begin(), set.pressure_bounds.end(), jumps_at_zero);
         has_jumps        = problem.reduction().min(jumps ? -1. : 0.) < 0;
       }
@@ -166,7 +174,8 @@ namespace slipstick::qp
       }
 
       /// Weighted norm of (x - proj(x - s g)) / s for entries with bounds and of g for the others, like residuals of
-      /// faces.
+      /// faces. Of tangential entries the distance from the friction cone counts, not that from the bound at the present
+      /// normal force, which a change smaller by the coefficient would move there (doc/decisions/0163).
       double natural_residual(const Vector &x, const Vector &g)
       {
         const Sides             before            = active;
@@ -179,8 +188,8 @@ namespace slipstick::qp
               const double r = weight(i) * g.begin()[i];
               sum += r * r;
             }
-        map(x, g, [&](const std::size_t, const double xi, const double projected, const double) {
-          const double r = norm * (xi - projected) / step;
+        map(x, g, [&](const std::size_t i, const double xi, const double projected, const double) {
+          const double r = (to_cone.empty() ? 1. : to_cone[i]) * norm * (xi - projected) / step;
           sum += r * r;
         });
         active  = before;
@@ -451,7 +460,8 @@ namespace slipstick::qp
       FrictionDiscs<Vector> discs;
       std::vector<double>   beyond;
       bool                  has_jumps = false; // on any process
-      std::vector<bool>     is_open;           // tangential entries whose bound jumped to 0 in the last prediction
+      std::vector<double>   to_cone; // distance of an entry from the friction cone over that from its bound; empty: 1
+      std::vector<bool>     is_open; // tangential entries whose bound jumped to 0 in the last prediction
     };
   } // namespace detail
 } // namespace slipstick::qp

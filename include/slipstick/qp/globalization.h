@@ -1,4 +1,4 @@
-// Steps of the semismooth Newton method that reduce the natural residual from any start: line search, watchdog, sets
+// Steps of the semismooth Newton method that reduce the natural residual from any start: line search, sets
 // beyond kinks, restarts.
 #pragma once
 
@@ -9,7 +9,6 @@
 #include <slipstick/qp/options.h>
 #include <slipstick/qp/set_history.h>
 #include <slipstick/qp/stopping_test.h>
-#include <slipstick/qp/watchdog.h>
 
 #include <algorithm>
 #include <cmath>
@@ -28,7 +27,7 @@ namespace slipstick::qp::detail
     using Point = NewtonPoint<Vector>;
 
     /// @param set, stop, now, next are changed; all are kept by reference. @param reference of residuals.
-    /// @param is_rough_ whether the start is far from the solution.
+    /// @param is_rough_ NewtonStart::is_rough
     Globalization(const Problem              &problem_,
                   const NewtonOptions        &options_,
                   const double                reference_,
@@ -45,11 +44,9 @@ namespace slipstick::qp::detail
       , now(now_)
       , next(next_)
       , line(options_)
-      , watchdog(options_)
       , refused(most_kinks + 1)
       , is_rough(is_rough_)
       , is_candidate(!is_rough_)
-      , predicted_from(zero_like(now_.x))
     {}
 
     /// Starts from a point whose gradient is known. The present set, which was predicted from the start, is kept unless
@@ -60,8 +57,6 @@ namespace slipstick::qp::detail
       line.begin(set.natural_residual(now.x, now.gradient));
       if (is_rough)
         predict(now);
-      else
-        predicted_from = now.gradient; // where whole steps from here fail, this predicts the set
     }
 
     /// Natural residual of the present point.
@@ -85,28 +80,13 @@ namespace slipstick::qp::detail
     /// Moves along the step to the next point and set. @return whether there is one.
     bool step()
     {
-      double t     = line.search(set, now, next);
-      is_candidate = false;
-      if (watchdog.is_watching())
-        {
-          if (watchdog.continues(line))
-            {
-              go_whole();
-              return true;
-            }
-          t = come_back();
-        }
-      else if (t < options.shortest_step && !stop.has_met_goal() && watchdog.may_begin(line))
-        {
-          watchdog.begin({now, next, predicted_from, line, t});
-          go_whole();
-          return true;
-        }
+      const double t = line.search(set, now, next);
+      is_candidate   = false;
       if (t < options.shortest_step)
         {
           if (stop.has_met_goal())
             return false;
-          if (cross_kink() || restart() || leap())
+          if (cross_kink() || restart())
             return true;
           if (t == 0)
             return false;
@@ -147,35 +127,6 @@ namespace slipstick::qp::detail
       return is_changed || is_first;
     }
 
-    // Once, from a rough start, takes the whole step although it raises the residual. @return whether it was taken.
-    bool leap()
-    {
-      if (!is_rough || !(line.whole() <= options.longest_leap * line.present()))
-        return false;
-      is_rough = false;
-      go_whole();
-      return true;
-    }
-
-    // Returns to the point where whole steps began. @return the part of the step from there that is taken.
-    double come_back()
-    {
-      auto start = watchdog.give_up();
-      now        = std::move(start.from);
-      next       = std::move(start.to);
-      line       = std::move(start.line);
-      predict(now.x, start.predicted_from);
-      return start.t;
-    }
-
-    void go_whole()
-    {
-      go_to_next(line.whole());
-      stuck = false;
-      refused.clear();
-      predict_from_here(true);
-    }
-
     // @param is_solved whether this is the end of a whole step, so that the gradient on the free entries is
     // meaningless
     void predict_from_here(const bool is_solved)
@@ -195,15 +146,9 @@ namespace slipstick::qp::detail
           combine(1 - t, now.Fx, t, next.Fx);
           next.error_of_Fx = std::max(now.error_of_Fx, next.error_of_Fx);
         }
-      if (line.found() < line.least())
-        stop.propose(next, line.found() / reference);
-      go_to_next(line.found());
-    }
-
-    void go_to_next(const double merit)
-    {
-      line.move_to(merit);
-      set.approach(merit / reference);
+      stop.propose(next, line.found() / reference);
+      line.begin(line.found());
+      set.approach(line.found() / reference);
       std::swap(now, next);
     }
 
@@ -213,18 +158,13 @@ namespace slipstick::qp::detail
       predict(at.x, at.gradient);
     }
 
-    // Natural residuals with different s cannot be compared. Those of earlier points are therefore scaled by the
-    // factor by which the residual of the present point changes with s.
+    // Natural residuals with different s cannot be compared.
     void predict(const Vector &at, const Vector &gradient)
     {
       const double before = set.step_length();
-      predicted_from      = gradient;
       set.predict(at, gradient);
-      if (set.step_length() == before || !(line.present() > 0))
-        return;
-      const double factor = set.natural_residual(now.x, now.gradient) / line.present();
-      line.rescale(factor);
-      watchdog.rescale(factor);
+      if (set.step_length() != before)
+        line.begin(set.natural_residual(now.x, now.gradient));
     }
 
     const Problem              &problem;
@@ -236,11 +176,9 @@ namespace slipstick::qp::detail
     Point                      &next; // end of the present step
 
     LineSearch<Vector, ActiveSet<Vector, Problem>> line;
-    Watchdog<Vector, ActiveSet<Vector, Problem>>   watchdog;
-    SetHistory refused;        // sets whose steps do not lower the residual of the present point
-    bool       is_rough;       // whether the start is, and no step has raised the residual deliberately yet
-    bool       is_candidate;   // may_be_solution()
-    bool       stuck = false;  // is_stuck()
-    Vector     predicted_from; // gradient of the last prediction
+    SetHistory refused;       // sets whose steps do not lower the residual of the present point
+    bool       is_rough;      // NewtonStart::is_rough
+    bool       is_candidate;  // may_be_solution()
+    bool       stuck = false; // is_stuck()
   };
 } // namespace slipstick::qp::detail

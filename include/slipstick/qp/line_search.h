@@ -5,7 +5,6 @@
 #include <slipstick/qp/newton_point.h>
 #include <slipstick/qp/options.h>
 
-#include <algorithm>
 #include <optional>
 #include <utility>
 
@@ -25,24 +24,10 @@ namespace slipstick::qp::detail
       : options(&options_)
     {}
 
-    /// Starts from a first point, or from one whose residual cannot be compared with earlier ones.
+    /// Starts from a point with this natural residual.
     void begin(const double residual)
     {
-      at_present = smallest = residual;
-    }
-
-    /// The method has moved to a point with this residual.
-    void move_to(const double residual)
-    {
       at_present = residual;
-      smallest   = std::min(smallest, residual);
-    }
-
-    /// Converts the residuals so far to another measure.
-    void rescale(const double factor)
-    {
-      at_present *= factor;
-      smallest *= factor;
     }
 
     /// Natural residual of the present point.
@@ -51,18 +36,12 @@ namespace slipstick::qp::detail
       return at_present;
     }
 
-    /// The smallest natural residual of all points.
-    double least() const
-    {
-      return smallest;
-    }
-
     /// Length t <= 1 of a step from one point towards the other, found by backtracking, for which the residual falls
     /// below that of the present point; 0 if there is none.
     double search(Set &set, const Point &from, const Point &to)
     {
-      residual_of_step = residual_of_whole = set.natural_residual(to.x, to.gradient);
-      double t                             = 1;
+      residual_of_step = set.natural_residual(to.x, to.gradient);
+      double t         = 1;
       while (!(residual_of_step <= (1 - options->sufficient_decrease * t) * at_present))
         {
           if (t < 1)
@@ -80,12 +59,6 @@ namespace slipstick::qp::detail
           residual_of_step = set.natural_residual(end_of_step->x, end_of_step->gradient);
         }
       return t;
-    }
-
-    /// Natural residual at the end of the whole step of the last search.
-    double whole() const
-    {
-      return residual_of_whole;
     }
 
     /// Natural residual at the end of the last step found.
@@ -111,8 +84,7 @@ namespace slipstick::qp::detail
     static constexpr double least_part_of_step = 1e-10;
 
     const NewtonOptions *options;
-    double               at_present = 0, smallest = 0;
-    double               residual_of_step = 0, residual_of_whole = 0;
+    double               at_present = 0, residual_of_step = 0;
     std::optional<Point> end_of_step, nearest_refused;
   };
 } // namespace slipstick::qp::detail

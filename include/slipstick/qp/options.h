@@ -103,10 +103,7 @@ namespace slipstick::qp
     double       gaps_over_forces       = 10;   // largest |gP| over tolerance times |PFP| times the forces
     double       sufficient_decrease    = 1e-2; // a step must lower the natural residual by this part times its length;
     double       backtracking           = 0.5;  // ... otherwise the length is multiplied by this, ...
-    double       shortest_step          = 1e-3; // ... down to this; then whole steps and other sets are tried
-    double       largest_rise           = 100;  // residual after the first whole step over that before, ...
-    double       least_progress         = 0.5;  // ... and the same for those that follow it
-    double       longest_leap           = 1e4;  // the same for the single step from a rough start
+    double       shortest_step          = 1e-3; // ... down to this; then other sets are tried
     unsigned int max_outer_iterations   = 100;
     unsigned int n_directions           = 200; // number of directions stored with their products
     FaceSolverOptions face;

@@ -57,7 +57,7 @@ namespace slipstick::qp
     /// Directions of earlier solves with the same F and G, to which this solve adds its own; null: none.
     std::shared_ptr<DirectionStore<Vector>> directions = nullptr;
 
-    /// Whether the start is far from the solution. If so, one step may raise the residual.
+    /// Whether the start is far from the solution. If so, the first set is predicted again where the start is balanced.
     bool is_rough = false;
   };
 
