@@ -162,7 +162,8 @@ class DraggedStrip(unittest.TestCase):
 
     def test_forces(self):
         for law, bound in (('Coulomb', {'Friction coefficient': '0.3'}), ('Tresca', {'Slip bound': '0.15'})):
-            for pull, tolerance in (('1', '1e-8'), ('1000', '1e-7')):  # of 1000 mm, rounding is above 1e-8 of the strains
+            # of 1000 mm, rounding is above 1e-8 of the strains; at 1e-7 some pulls, 900 and 1000 mm, end with status 3
+            for pull, tolerance in (('1', '1e-8'), ('1000', '3e-6')):
                 scene = self.strip(8, '100, 2, 4', pull, Law=law, **bound)
                 found = converged(scene, {'Solver/Tolerance': tolerance}).summary
                 self.assertAlmostEqual(found['results']['contact'][0]['force'][0], -60, delta=0.01, msg=f'{law} {pull}')
