@@ -122,11 +122,11 @@ n_cores() {
   echo "$cores"
 }
 
-# Compilers of deal.II code take up to 2.7 GB each.
+# Compilers of deal.II code take up to 3 GB each.
 n_jobs() {
   local jobs fit
   jobs=$(n_cores)
-  fit=$(awk '/^MemAvailable:/ { print int($2 / 2800000) }' /proc/meminfo 2>/dev/null) || fit=
+  fit=$(awk '/^MemAvailable:/ { print int($2 / 3000000) }' /proc/meminfo 2>/dev/null) || fit=
   [[ -n $fit && $fit -lt $jobs ]] && jobs=$fit
   [[ $jobs -ge 1 ]] || jobs=1
   echo "${SLIPSTICK_JOBS:-$jobs}"

@@ -30,7 +30,8 @@ class Materials(Extremes):
         """Sets recurred where faces were solved to more than the gradients that tell slip from stick (decision 0111)."""
         table = Table('the same at 1e-8, seeds of METIS')
         case = stack(box={'Young modulus': repr(E * 1e-8)})
-        counts = [count(self.converges(table, str(seed), case, {'Decomposition/Seed': seed}, most=180)) for seed in range(12)]
+        counts = [count(self.converges(table, str(seed), case, {'Decomposition/Seed': seed}, most=180))
+                  for seed in range(12)]
         self.assertLessEqual(sum(counts), 650)
 
     def test_stiffness_ratio_beyond_rounding(self):

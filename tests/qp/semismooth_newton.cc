@@ -406,40 +406,38 @@ TEST(SemismoothNewton, converges_where_full_steps_cycle)
     }
 }
 
-// Equilibria need not exist or be unique; a result that is reported as one must be one.
+namespace
+{
+  /// Number of random problems of Coulomb friction that are solved; what is reported as a solution must be one.
+  unsigned int n_solved(const std::vector<double> &coefficients, const unsigned int n_seeds, const unsigned int n_nodes)
+  {
+    unsigned int n = 0;
+    for (const double coefficient : coefficients)
+      for (unsigned int seed = 0; seed < n_seeds; ++seed)
+        {
+          const Contact p(seed, n_nodes, {0., coefficient});
+          const auto    found = p.solve(p.set);
+          if (found.status != Status::converged)
+            continue;
+          ++n;
+          EXPECT_LT(p.violation(found.x), 1e-8) << coefficient << ", " << seed;
+          EXPECT_LT(p.imbalance(found.x), 1e-8) << coefficient << ", " << seed;
+        }
+    return n;
+  }
+} // namespace
+
+// Equilibria need not exist or be unique.
 TEST(SemismoothNewton, large_coefficients_never_end_in_a_wrong_solution)
 {
-  unsigned int n_solved = 0;
-  for (const double coefficient : {1., 3., 10.})
-    for (unsigned int seed = 0; seed < 60; ++seed)
-      {
-        const Contact p(seed, 5, {0., coefficient});
-        const auto    found = p.solve(p.set);
-        if (found.status != Status::converged)
-          continue;
-        ++n_solved;
-        EXPECT_LT(p.violation(found.x), 1e-8) << coefficient << ", " << seed;
-        EXPECT_LT(p.imbalance(found.x), 1e-8) << coefficient << ", " << seed;
-      }
-  EXPECT_GT(n_solved, 100u);
+  EXPECT_GT(n_solved({1., 3., 10.}, 60, 5), 100u);
 }
 
 // 293 of these 300 problems are solved; 256 if residuals of slipping entries are their distances from the bound at the
 // present normal force, not from the cone.
 TEST(SemismoothNewton, high_friction_is_solved_by_distances_from_the_cone)
 {
-  unsigned int n_solved = 0;
-  for (const double coefficient : {20., 50., 100.})
-    for (unsigned int seed = 0; seed < 100; ++seed)
-      {
-        const Contact p(seed, 6, {0., coefficient});
-        const auto    found = p.solve(p.set);
-        if (found.status != Status::converged)
-          continue;
-        ++n_solved;
-        EXPECT_LT(p.violation(found.x), 1e-8) << coefficient << ", " << seed;
-      }
-  EXPECT_GE(n_solved, 285);
+  EXPECT_GE(n_solved({20., 50., 100.}, 100, 6), 285u);
 }
 
 TEST(SemismoothNewton, directions_of_an_earlier_solve_save_multiplications)

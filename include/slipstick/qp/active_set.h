@@ -54,24 +54,20 @@ namespace slipstick::qp
         , active(local_size(set.box.lower))
         , discs(set.pressure_bounds, weights, active.size())
         , beyond(active.size(), 0.)
+        , to_cone(active.size(), 1.)
         , is_open(active.size(), false)
       {
         for (std::size_t i = 0; i < active.size(); ++i)
           bounded.push_back(set.box.lower.begin()[i] > -HUGE_VAL || set.box.upper.begin()[i] < HUGE_VAL);
         for (const PressureBound &bound : set.pressure_bounds)
           {
-            bounded[bound.tangential] = true;
-            if (bound.is_disc())
-              bounded[bound.second] = true;
+            const double mu = bound.normal == no_entry ? 0. : bound.forces.coefficient;
+            for (const std::size_t i : {bound.tangential, bound.is_disc() ? bound.second : bound.tangential})
+              {
+                bounded[i] = true;
+                to_cone[i] = 1 / std::hypot(1., mu);
+              }
           }
-        for (const PressureBound &bound : set.pressure_bounds)
-          if (const double mu = bound.forces.coefficient; bound.normal != no_entry && mu > 0)
-            {
-              to_cone.resize(active.size(), 1.);
-              to_cone[bound.tangential] = 1 / std::sqrt(1 + mu * mu);
-              if (bound.is_disc())
-                to_cone[bound.second] = to_cone[bound.tangential];
-            }
         const bool jumps = std::any_of(set.pressure_bounds.begin(), set.pressure_bounds.end(), jumps_at_zero);
         has_jumps        = problem.reduction().min(jumps ? -1. : 0.) < 0;
       }
@@ -189,7 +185,7 @@ namespace slipstick::qp
               sum += r * r;
             }
         map(x, g, [&](const std::size_t i, const double xi, const double projected, const double) {
-          const double r = (to_cone.empty() ? 1. : to_cone[i]) * norm * (xi - projected) / step;
+          const double r = to_cone[i] * norm * (xi - projected) / step;
           sum += r * r;
         });
         active  = before;
@@ -460,8 +456,8 @@ namespace slipstick::qp
       FrictionDiscs<Vector> discs;
       std::vector<double>   beyond;
       bool                  has_jumps = false; // on any process
-      std::vector<double>   to_cone; // distance of an entry from the friction cone over that from its bound; empty: 1
-      std::vector<bool>     is_open; // tangential entries whose bound jumped to 0 in the last prediction
+      std::vector<double>   to_cone;           // distance of an entry from the friction cone over that from its bound
+      std::vector<bool>     is_open;           // tangential entries whose bound jumped to 0 in the last prediction
     };
   } // namespace detail
 } // namespace slipstick::qp
