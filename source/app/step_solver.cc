@@ -406,7 +406,8 @@ namespace slipstick::app
     return rows != Rows::others;
   }
 
-  // Motions that additional supports hold at a node: there, deformation would show as a motion.
+  // Motions that additional supports hold at a node: there, deformation would show as a motion. Motions that only open
+  // contact leaves are taken out together with them, since a rotation about that node is not one about the centroid.
   template <int dim>
   void StepSolver<dim>::take_out_still_motions(StepSolution &answer, const double t)
   {
@@ -416,12 +417,15 @@ namespace slipstick::app
     double size = 0;
     for (const auto &part : answer.recovery.u)
       size = std::max(size, part.size() > 0 ? part.lpNorm<Eigen::Infinity>() : 0.);
-    const double limit = check_limit(tolerance_of(discrete_scene().solver, dual_solution));
-    tfeti::remove_motions(problem.dual(),
-                          problem.still_motions(),
-                          dual_solution.free,
-                          part_of_limit * limit * dealii::Utilities::MPI::max(size, comm),
-                          answer.recovery.u);
+    const double limit     = check_limit(tolerance_of(discrete_scene().solver, dual_solution));
+    const double tolerated = part_of_limit * limit * dealii::Utilities::MPI::max(size, comm);
+    const auto   take_out  = [&](const std::vector<tfeti::RigidMotion> &motions) {
+      return tfeti::remove_motions(problem.dual(), motions, dual_solution.free, tolerated, answer.recovery.u);
+    };
+    std::vector<tfeti::RigidMotion> all = problem.still_motions();
+    all.insert(all.end(), answer.recovery.unresisted.begin(), answer.recovery.unresisted.end());
+    if (!take_out(all) && all.size() > problem.still_motions().size())
+      take_out(problem.still_motions());
     if (answer.stress)
       evaluate(answer, dual_solution, t);
   }

@@ -165,13 +165,7 @@ namespace slipstick::tfeti
     for (unsigned int r = 0; r < rows.c.size(); ++r)
       dual_load.local_element(r) -= rows.c[r];
     correction = zero();
-    resultants.resize(0);
-    for (const auto &system : systems)
-      {
-        const Eigen::VectorXd part = system->kernel().transpose() * system->load();
-        resultants.conservativeResize(resultants.size() + part.size());
-        resultants.tail(part.size()) = part;
-      }
+    resultants = bodies->loads_of_subdomains();
     loose->update_loads();
   }
 

@@ -267,7 +267,7 @@ namespace slipstick::tfeti
     }
   } // namespace
 
-  void remove_motions(DualProblem                    &dual,
+  bool remove_motions(DualProblem                    &dual,
                       const std::vector<RigidMotion> &motions,
                       const std::vector<bool>        &free,
                       const double                    tolerated,
@@ -287,9 +287,10 @@ namespace slipstick::tfeti
       else // closes a gap
         worst = std::max(worst, std::min(-moved[r], jumps.local_element(r) - moved[r] - c[r]));
     if (dealii::Utilities::MPI::max(worst, dual.communicator()) > tolerated)
-      return;
+      return false;
     subtract_motion(dual, motion.amplitudes, u);
     dual.set_right_hand_side(std::move(c));
+    return true;
   }
 
   DistributedVector misfit(const DualProblem &dual, const Recovery &of, const std::vector<bool> &free)

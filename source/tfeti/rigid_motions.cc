@@ -18,7 +18,7 @@ namespace slipstick::tfeti
   namespace
   {
     // Resultants below this part of the sum of magnitudes are rounding of zero.
-    constexpr double rounding_of_loads = 1e-13;
+    constexpr double rounding_of_loads = 1e-12;
     // Resistance of rigid rows, relative to the resistance to the best held motion.
     constexpr double weight_of_rigid_rows = 1e6;
 
@@ -57,6 +57,29 @@ namespace slipstick::tfeti
       {
         archive &row &body &values;
       }
+    };
+
+    /// Sums of loads along rigid motions, and of their magnitudes.
+    struct SumsOfLoads
+    {
+      explicit SumsOfLoads(const Eigen::Index n_motions)
+        : values(Eigen::MatrixXd::Zero(n_motions, 2))
+      {}
+
+      /// @param motions displacements of all unknowns, one column per motion.
+      void add(const Eigen::Index first_motion, const Eigen::MatrixXd &motions, const Eigen::VectorXd &load)
+      {
+        values.col(0).segment(first_motion, motions.cols()) += motions.transpose() * load;
+        values.col(1).segment(first_motion, motions.cols()) += motions.cwiseAbs().transpose() * load.cwiseAbs();
+      }
+
+      /// The sums; 0 where the loads cancel to rounding.
+      Eigen::VectorXd without_rounding() const
+      {
+        return (values.col(0).array().abs() <= rounding_of_loads * values.col(1).array()).select(0., values.col(0));
+      }
+
+      Eigen::MatrixXd values;
     };
 
     bool is_gluing(const Constraints &constraints, const unsigned int owned_row)
@@ -224,16 +247,41 @@ namespace slipstick::tfeti
 
   Eigen::VectorXd BodyMotions::loads() const
   {
-    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n_motions, 2); // of the loads, and of their magnitudes
+    SumsOfLoads sums(n_motions);
     for (const auto &subdomain : subdomains)
       {
         const Eigen::MatrixXd modes = subdomain->kernel() * subdomain->body_modes();
         const Eigen::Index    first = subdomain->body() * motions_of_body;
-        sums.col(0).segment(first, motions_of_body) += modes.transpose() * subdomain->load();
-        sums.col(1).segment(first, motions_of_body) += modes.cwiseAbs().transpose() * subdomain->load().cwiseAbs();
+        sums.add(first, modes, subdomain->load());
+      }
+    MPI_Allreduce(MPI_IN_PLACE, sums.values.data(), sums.values.size(), MPI_DOUBLE, MPI_SUM, comm);
+    return sums.without_rounding();
+  }
+
+  Eigen::VectorXd BodyMotions::loads_of_subdomains() const
+  {
+    std::vector<Eigen::VectorXd> own;                                        // by subdomain
+    Eigen::MatrixXd              sums = Eigen::MatrixXd::Zero(n_motions, 2); // of these; number of subdomains
+    for (const auto &subdomain : subdomains)
+      {
+        SumsOfLoads of_this(motions_of_body);
+        of_this.add(0, subdomain->kernel(), subdomain->load());
+        own.push_back(of_this.without_rounding());
+        const Eigen::Index first = subdomain->body() * motions_of_body;
+        sums.col(0).segment(first, motions_of_body) += subdomain->body_modes().transpose() * own.back();
+        sums.col(1).segment(first, motions_of_body).array() += 1;
       }
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, comm);
-    return (sums.col(0).array().abs() <= rounding_of_loads * sums.col(1).array()).select(0., sums.col(0));
+    const Eigen::VectorXd rounding = (loads().array() == 0).select(sums.col(0).array() / sums.col(1).array(), 0.);
+    Eigen::VectorXd       result(motions_of_body * subdomains.size());
+    for (unsigned int p = 0; p < subdomains.size(); ++p)
+      {
+        const Eigen::Index first = subdomains[p]->body() * motions_of_body;
+        result.segment(p * motions_of_body, motions_of_body) =
+          own[p] -
+          subdomains[p]->body_modes().transpose().partialPivLu().solve(rounding.segment(first, motions_of_body));
+      }
+    return result;
   }
 
   Eigen::SparseMatrix<double, Eigen::RowMajor> BodyMotions::jumps(const std::vector<RigidMotion> &motions) const

@@ -238,6 +238,41 @@ class FreeMotions(unittest.TestCase):
                 self.assertAlmostEqual(results['contact'][0]['force'][1] / load, -1, delta=1e-3)
                 self.assertAlmostEqual(results['max_displacement'], 0.1, delta=0.02)
 
+    def test_loads_that_balance_themselves(self):
+        """Heat, opposed tractions: rounding decided about equilibrium (status 4), and turned the body by 4e-4."""
+        def square(law='frictionless', at=(0.1, 1), loads={}, **kinds):
+            return scenes.box('square', plane_state='plane stress', materials={'steel': {**STEEL, 'Thermal expansion': '1.2e-5'}}, bodies={
+                'b': {'Origin': '{}, {}'.format(*at), 'Size': '8, 8', 'Cells': '6, 6', 'Material': 'steel'}},
+                obstacles={'w': {'Shape': 'half plane', 'Point': '{}, {}'.format(at[0] - 0.1, at[1]), 'Normal': '1, 0'}},
+                contacts={'c': {'Slave': 'b/left', 'Master': 'w', 'Law': law, **({'Friction coefficient': '0.3'} if law == 'Coulomb' else {})}},
+                Output={'VTU': 'false'}, **loads, **kinds)
+        cold = {'temperatures': {'cold': {'Bodies': 'b', 'Change': '-100'}}}
+        three = {'Decomposition': {'Method': 'METIS', 'Subdomains': '3'}}
+        pulled = {'tractions': {'top': {'Boundary': 'b/top', 'Traction y': '100'}, 'bottom': {'Boundary': 'b/bottom', 'Traction y': '-100'}}}
+        half = 4 * 1.2e-3  # of the change of width
+        for case, ranks, x, y in ((square(loads=cold), 1, half, half), (square('Coulomb', loads=cold, **three), 2, half, half),
+                                  (square(at=(1e4, -2e4), loads=cold), 1, half, half),
+                                  (square(loads=pulled), 1, 0.3 * 100 / 2.1e5 * 4, 100 / 2.1e5 * 4)):
+            result = self.converges(case, 'body b', ranks=ranks)
+            results = result.summary['results']
+            self.assertAlmostEqual(results['max_displacement'] / math.hypot(x, y), 1, delta=1e-6)
+            self.assertEqual(results['contact'][0]['normal_force'], 0)
+
+    def test_a_ring_heated_until_it_comes_off(self):
+        """And cooled again: status 4 and 3 once. The gap is even all around, 1.2e-5 * 200 * 20 - 0.02 mm."""
+        steel = {**STEEL, 'Thermal expansion': '1.2e-5'}
+        for law in ({'Law': 'frictionless'}, {'Law': 'Coulomb', 'Friction coefficient': '0.15'}):
+            result = self.converges(scenes.box('ring', plane_state='plane stress', materials={'steel': steel}, bodies={
+                'shaft': {'Shape': 'disc', 'Radius': '20', 'Cells along arc': '16', 'Material': 'steel'},
+                'hub': {'Shape': 'ring', 'Inner radius': '20', 'Radius': '60', 'Cells': '16, 4', 'Material': 'steel'}},
+                temperatures={'heat': {'Bodies': 'hub', 'Change': '200*(t<2)'}},
+                contacts={'fit': {'Slave': 'hub/inner', 'Master': 'shaft/arc', 'Offset': '-0.02', **law}},
+                Decomposition={'Method': 'none'}, Output={'VTU': 'false'}, **{'Load steps': {'Factors': '1, 2'}}), 'body hub')
+            for row in result.contact:
+                if row['step'] == 0:
+                    self.assertAlmostEqual(row['gap'], 0.028, delta=1e-6)
+            self.assertGreater(result.summary['steps'][1]['contact'][0]['normal_force'], 1000)
+
     def test_forces_that_are_nothing_beside_the_gap(self):
         """What the load closes elastically is 1e-10 to 1e-15 of the gap: forces must balance all the same."""
         smalbe = {'Solver': {'Algorithm': 'smalbe'}}

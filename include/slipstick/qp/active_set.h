@@ -91,6 +91,13 @@ namespace slipstick::qp
         return result;
       }
 
+      std::vector<bool> without_bounds() const
+      {
+        std::vector<bool> result = bounded;
+        result.flip();
+        return result;
+      }
+
       const Box<Vector> &box() const
       {
         return set.box;

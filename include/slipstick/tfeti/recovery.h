@@ -40,8 +40,8 @@ namespace slipstick::tfeti
 
   /// Takes motions out of u that no row resists except those of auxiliary supports, whose prescribed displacements
   /// follow; unless other rows were moved by more than @p tolerated [mm]. Collective.
-  /// @param free as in recover().
-  void remove_motions(DualProblem                    &dual,
+  /// @param free as in recover(). @return whether they were taken out.
+  bool remove_motions(DualProblem                    &dual,
                       const std::vector<RigidMotion> &motions,
                       const std::vector<bool>        &free,
                       const double                    tolerated,
