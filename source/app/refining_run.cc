@@ -73,11 +73,9 @@ namespace slipstick::app
     for (;;)
       {
         steps.reset();
-        std::optional<std::vector<std::string>> wanted;
-        if (options.error_bars)
-          wanted.emplace(); // all
-        else if (!options.goals.empty())
-          wanted = options.goals;
+        std::optional<RequestedBars> wanted;
+        if (options.error_bars || !options.goals.empty())
+          wanted = RequestedBars{options.error_bars, options.goals};
         steps.emplace(scene, directory, quiet, comm, wanted, &refinement);
         steps->start_from(std::move(contact));
         if (is_undriven)
@@ -191,14 +189,22 @@ namespace slipstick::app
     counted          = dealii::Utilities::MPI::broadcast(comm, counted);
     without_estimate = counted.empty() ? "none of the figures has an estimate" : "";
     may_settle       = true;
-    for (const auto &bar : bars)
+    for (const std::string &goal : counted)
       {
-        if (std::find(counted.begin(), counted.end(), bar.quantity) == counted.end() || bar.error)
+        const auto bar =
+          std::find_if(bars.begin(), bars.end(), [&goal](const output::ErrorBar &one) { return one.quantity == goal; });
+        const bool has_bar = bar != bars.end();
+        const auto scale   = scales.find(goal);
+        if (has_bar && bar->error && scale != scales.end() && scale->second > 0)
           continue;
-        const auto before = values.find(bar.quantity);
-        may_settle = may_settle && before != values.end() && std::abs(bar.value) <= settling * std::abs(before->second);
+        const auto before = values.find(goal);
+        may_settle        = may_settle && has_bar && !bar->error && before != values.end() &&
+                     std::abs(bar->value) <= settling * std::abs(before->second);
         if (without_estimate.empty())
-          without_estimate = bar.quantity + " has no estimate: " + bar.reason;
+          without_estimate = goal + " has no estimate: " +
+                             (!has_bar      ? "the results do not include it"
+                              : !bar->error ? bar->reason
+                                            : "it is 0, as all figures of its kind, and 0 has no relative accuracy");
       }
     may_settle       = dealii::Utilities::MPI::broadcast(comm, may_settle);
     without_estimate = dealii::Utilities::MPI::broadcast(comm, without_estimate);
