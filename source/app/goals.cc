@@ -393,6 +393,7 @@ namespace slipstick::app
           error.reason        = adjoint.is_possible() ? functional.reason : loose;
           error.is_resolvable = adjoint.is_possible() && functional.is_resolvable;
           error.is_infinite   = functional.is_infinite;
+          error.is_singular   = adjoint.is_possible() && functional.is_singular;
           if (error.reason.empty())
             {
               const auto z = functional.is_of_multipliers

@@ -60,7 +60,8 @@ namespace slipstick::app
           });
         if (near != around.end())
           list.back().reason = "not resolved, or without limit, at " + near->of.what;
-        const auto cells = mechanics::cells_at(solver.mesh(), solver.spaces(), stress, around);
+        list.back().is_singular = near != around.end();
+        const auto cells        = mechanics::cells_at(solver.mesh(), solver.spaces(), stress, around);
         if (!note_unresolved(around, cells, list.back()) && near == around.end() && !is_named)
           return;
         const auto regular = mechanics::stress_places(solver.mesh(), solver.spaces(), stress, around).von_mises;

@@ -23,8 +23,9 @@ namespace slipstick::app
     double                       shortfall         = 0;     // of a place with an error, if the value itself has none
     bool                         is_resolvable     = false; // finer cells remove the reason
     bool                         is_infinite       = false; // the reason: no mesh has an estimate
-    bool                         is_on_request     = false; // of interest only as a goal
-    std::string                  note              = "";    // what the quantity covers, if its name does not say it
+    bool                         is_singular   = false; // the reason: a singular point, where stresses may be infinite
+    bool                         is_on_request = false; // of interest only as a goal
+    std::string                  note          = "";    // what the quantity covers, if its name does not say it
   };
 
   /// The quantities that get error bars.

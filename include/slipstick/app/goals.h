@@ -20,6 +20,7 @@ namespace slipstick::app
     std::string                  reason;                // why there is no estimate
     bool                         is_resolvable = false; // finer cells remove the reason
     bool                         is_infinite   = false; // the reason: no mesh has an estimate
+    bool                         is_singular   = false; // the reason: a singular point, where stresses may be infinite
     double                       value         = 0;     // of the quantity
     double                       correction    = 0;     // sum over the cells, to be added to the value
     double                       absolute      = 0;     // sum of the magnitudes
