@@ -27,6 +27,23 @@ namespace slipstick::app
     }
   } // namespace
 
+  bool RequestedBars::is_goal(const std::string &quantity) const
+  {
+    return std::find(goals.begin(), goals.end(), quantity) != goals.end();
+  }
+
+  bool RequestedBars::includes(const Functional &functional) const
+  {
+    return is_goal(functional.quantity) || (all && !functional.is_on_request);
+  }
+
+  bool RequestedBars::includes_some_of(const std::string &text) const
+  {
+    return all || std::any_of(goals.begin(), goals.end(), [&text](const std::string &goal) {
+             return goal.rfind(text, 0) == 0;
+           });
+  }
+
   template <int dim>
   Functionals<dim>::Functionals(const StepSolver<dim>        &solver_,
                                 const mechanics::Probes<dim> &probes_,
@@ -59,9 +76,12 @@ namespace slipstick::app
     for (unsigned int s = 0; s < solver.n_given_supports(); ++s)
       for (unsigned int d = 0; d < dim; ++d)
         {
-          auto goal = reaction(scene.supports[s].name + ".force_" + component(d), s, d);
-          if (holds(goal))
-            list.push_back(std::move(goal));
+          list.push_back(reaction(scene.supports[s].name + ".force_" + component(d), s, d));
+          if (holds(list.back()))
+            continue;
+          list.back().reason        = "the support holds nothing along " + component(d);
+          list.back().is_infinite   = true;
+          list.back().is_on_request = true;
         }
     for (unsigned int k = 0; k < scene.probes.size(); ++k)
       if (scene.probes[k].ends.size() == 1)

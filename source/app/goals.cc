@@ -1,4 +1,3 @@
-#include <slipstick/app/functionals.h>
 #include <slipstick/app/goals.h>
 #include <slipstick/app/stress_functionals.h>
 #include <slipstick/base/collective.h>
@@ -363,15 +362,12 @@ namespace slipstick::app
                                      const StepSolution                              &answer,
                                      const double                                     t,
                                      const std::vector<mechanics::Surroundings<dim>> &peaks,
-                                     const std::vector<std::string>                  &quantities)
+                                     const RequestedBars                             &requested)
   {
-    const auto wanted = [&](const std::string &name) {
-      return quantities.empty() || std::find(quantities.begin(), quantities.end(), name) != quantities.end();
-    };
     auto                   gaps = solver.dual().constraints().c; // overwritten by the adjoint problems
     const Functionals<dim> of_scene(solver, probes, answer, t);
     auto                   functionals = of_scene.all();
-    for (auto &functional : stress_functionals(solver, probes, answer, of_scene.point_forces(), peaks, t, quantities))
+    for (auto &functional : stress_functionals(solver, probes, answer, of_scene.point_forces(), peaks, t, requested))
       functionals.push_back(std::move(functional));
     const ErrorProducts<dim>  products(solver, answer, t);
     const GapErrors<dim>      gap_errors(solver, t);
@@ -385,7 +381,7 @@ namespace slipstick::app
     const std::string loose = "bodies slide on all of their contacts";
     std::vector<GoalError> errors;
     for (const auto &functional : functionals)
-      if (wanted(functional.quantity))
+      if (requested.includes(functional))
         {
           GoalError error;
           error.quantity      = functional.quantity;
@@ -397,6 +393,7 @@ namespace slipstick::app
           error.reason        = adjoint.is_possible() ? functional.reason : loose;
           error.is_resolvable = adjoint.is_possible() && functional.is_resolvable;
           error.is_infinite   = functional.is_infinite;
+          error.is_singular   = adjoint.is_possible() && functional.is_singular;
           if (error.reason.empty())
             {
               const auto z = functional.is_of_multipliers
@@ -406,7 +403,7 @@ namespace slipstick::app
             }
           errors.push_back(std::move(error));
         }
-    if (wanted("strain_energy"))
+    if (requested.includes_some_of("strain_energy"))
       {
         if (adjoint.is_possible())
           errors.push_back(
@@ -429,11 +426,11 @@ namespace slipstick::app
                                               const StepSolution &,
                                               const double,
                                               const std::vector<mechanics::Surroundings<2>> &,
-                                              const std::vector<std::string> &);
+                                              const RequestedBars &);
   template std::vector<GoalError> goal_errors(StepSolver<3> &,
                                               const mechanics::Probes<3> &,
                                               const StepSolution &,
                                               const double,
                                               const std::vector<mechanics::Surroundings<3>> &,
-                                              const std::vector<std::string> &);
+                                              const RequestedBars &);
 } // namespace slipstick::app

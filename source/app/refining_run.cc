@@ -23,6 +23,11 @@ namespace slipstick::app
     // Cells with large errors in the energy norm are divided, too, if two meshes have not reduced the error of the goals
     // to this fraction.
     constexpr double stagnation = 0.7;
+    // A stress grows without limit, as far as meshes show, if this many of its last increases are each at least this
+    // fraction of the one before, and the last one is larger than the accuracy: those of a stress with a limit decrease
+    // with the errors.
+    constexpr std::size_t n_increases      = 3;
+    constexpr double      lasting_increase = 0.9;
     // Presets leave out quantities whose value and error are below this fraction of the largest one with the same unit.
     constexpr double nothing = 1e-5;
     // The accuracy of a value that is 0 within its error applies to this fraction of the largest one with the same unit.
@@ -44,6 +49,19 @@ namespace slipstick::app
       for (const auto &pair : results.contact)
         largest = std::max(largest, pair.max_pressure);
       return largest;
+    }
+
+    /// @param values on all meshes so far.
+    bool grows_without_limit(const std::vector<double> &values, const double accuracy)
+    {
+      const std::size_t n = values.size();
+      if (n <= n_increases || values[n - 1] - values[n - 2] <= accuracy * values[n - 1])
+        return false;
+      for (std::size_t k = n - n_increases; k < n; ++k)
+        if (const double increase = values[k] - values[k - 1];
+            !(increase > 0) || (k > n - n_increases && increase < lasting_increase * (values[k - 1] - values[k - 2])))
+          return false;
+      return true;
     }
   } // namespace
 
@@ -73,11 +91,9 @@ namespace slipstick::app
     for (;;)
       {
         steps.reset();
-        std::optional<std::vector<std::string>> wanted;
-        if (options.error_bars)
-          wanted.emplace(); // all
-        else if (!options.goals.empty())
-          wanted = options.goals;
+        std::optional<RequestedBars> wanted;
+        if (options.error_bars || !options.goals.empty())
+          wanted = RequestedBars{options.error_bars, options.goals};
         steps.emplace(scene, directory, quiet, comm, wanted, &refinement);
         steps->start_from(std::move(contact));
         if (is_undriven)
@@ -191,14 +207,22 @@ namespace slipstick::app
     counted          = dealii::Utilities::MPI::broadcast(comm, counted);
     without_estimate = counted.empty() ? "none of the figures has an estimate" : "";
     may_settle       = true;
-    for (const auto &bar : bars)
+    for (const std::string &goal : counted)
       {
-        if (std::find(counted.begin(), counted.end(), bar.quantity) == counted.end() || bar.error)
+        const auto bar =
+          std::find_if(bars.begin(), bars.end(), [&goal](const output::ErrorBar &one) { return one.quantity == goal; });
+        const bool has_bar = bar != bars.end();
+        const auto scale   = scales.find(goal);
+        if (has_bar && bar->error && scale != scales.end() && scale->second > 0)
           continue;
-        const auto before = values.find(bar.quantity);
-        may_settle = may_settle && before != values.end() && std::abs(bar.value) <= settling * std::abs(before->second);
+        const auto before = values.find(goal);
+        may_settle        = may_settle && has_bar && !bar->error && before != values.end() &&
+                     std::abs(bar->value) <= settling * std::abs(before->second.back());
         if (without_estimate.empty())
-          without_estimate = bar.quantity + " has no estimate: " + bar.reason;
+          without_estimate = goal + " has no estimate: " +
+                             (!has_bar      ? "the results do not include it"
+                              : !bar->error ? bar->reason
+                                            : "it is 0, as all figures of its kind, and 0 has no relative accuracy");
       }
     may_settle       = dealii::Utilities::MPI::broadcast(comm, may_settle);
     without_estimate = dealii::Utilities::MPI::broadcast(comm, without_estimate);
@@ -241,10 +265,10 @@ namespace slipstick::app
           if (before == values.end())
             change.reset();
           else if (const double scale = scales.at(bar.quantity); change && scale > 0)
-            change = std::max(*change, std::abs(bar.value - before->second) / scale);
+            change = std::max(*change, std::abs(bar.value - before->second.back()) / scale);
         }
     for (const auto &bar : bars)
-      values[bar.quantity] = bar.value;
+      values[bar.quantity].push_back(bar.value);
     return change;
   }
 
@@ -263,10 +287,11 @@ namespace slipstick::app
       return so_far;
     const bool is_resolvable =
       std::any_of(goals.begin(), goals.end(), [](const GoalError &goal) { return goal.is_resolvable; });
-    const bool is_coarse = rows.back().unknowns < least_unknowns_without_estimate<dim>;
-    n_without            = is_known || is_resolvable || may_settle || is_coarse ? 0 : n_without + 1;
+    const bool is_coarse         = rows.back().unknowns < least_unknowns_without_estimate<dim>;
+    n_without                    = is_known || is_resolvable || may_settle || is_coarse ? 0 : n_without + 1;
+    const std::string for_stress = remedy_for_stress(steps, summary);
     if (n_without == most_without_estimate)
-      return so_far;
+      return so_far + (for_stress.empty() ? "" : "; " + for_stress);
     const std::string limit = mark_next(steps, summary);
     if (limit.empty())
       return "";
@@ -276,7 +301,45 @@ namespace slipstick::app
         notes.push_back("the errors of the figures are those of one mesh, which no finer one confirms: " + limit);
         return "";
       }
-    return so_far + "; " + limit;
+    return so_far + "; " + (for_stress.empty() ? limit : for_stress);
+  }
+
+  template <int dim>
+  std::string RefiningRun<dim>::remedy_for_stress(const Run<dim> &steps, const output::Summary &summary) const
+  {
+    const std::string all = "max_von_mises", regular = "max_regular_von_mises";
+    const std::string probe = "the stress of a point Probe beside this place";
+    const auto        grows = [&](const std::string &goal) {
+      const auto found = values.find(goal);
+      return std::find(counted.begin(), counted.end(), goal) != counted.end() && found != values.end() &&
+             grows_without_limit(found->second, options.accuracy);
+    };
+    std::string text;
+    for (const auto &goal : goals_of(steps))
+      if (goal.quantity == all && goal.is_singular)
+        text = "finer meshes may not help: ask for " + regular + ", which leaves out such places, or for " + probe;
+    if (grows(all))
+      {
+        const auto &results = summary.results;
+        const auto &at      = results.max_von_mises_at;
+        text =
+          format("on the last %zu meshes %s grows without limit at %s of body %s%s, so that finer meshes do not help: "
+                 "ask for %s, which leaves out corners, ends of supports and of bonds, or for %s",
+                 n_increases + 1,
+                 all.c_str(),
+                 point_text(at.position, dim).c_str(),
+                 at.body.c_str(),
+                 results.singular.empty() ? "" : (", " + results.singular).c_str(),
+                 regular.c_str(),
+                 probe.c_str());
+      }
+    else if (grows(regular))
+      text = format("on the last %zu meshes %s grows without limit at a place that does not count as singular, so that "
+                    "finer meshes do not help: ask for %s",
+                    n_increases + 1,
+                    regular.c_str(),
+                    probe.c_str());
+    return dealii::Utilities::MPI::broadcast(comm, text);
   }
 
   template <int dim>

@@ -75,12 +75,12 @@ namespace slipstick::app
   }
 
   template <int dim>
-  Run<dim>::Run(const scene::Scene<dim>                &scene_,
-                const output::OutputDirectory          &directory_,
-                const Log                              &log_,
-                const MPI_Comm                          comm_,
-                std::optional<std::vector<std::string>> wanted_,
-                mesh::Refinement                       *refinement)
+  Run<dim>::Run(const scene::Scene<dim>       &scene_,
+                const output::OutputDirectory &directory_,
+                const Log                     &log_,
+                const MPI_Comm                 comm_,
+                std::optional<RequestedBars>   wanted_,
+                mesh::Refinement              *refinement)
     : directory(directory_)
     , log(log_)
     , comm(comm_)

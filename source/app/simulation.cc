@@ -45,9 +45,9 @@ namespace slipstick::app
       {
         if (adaptivity.refines())
           return RefiningRun<dim>(scene, adaptivity, directory, log, comm).run(steps);
-        std::optional<std::vector<std::string>> wanted;
+        std::optional<RequestedBars> wanted;
         if (adaptivity.error_bars)
-          wanted.emplace();
+          wanted = RequestedBars{true, {}};
         steps.emplace(scene, directory, log, comm, wanted);
         const bool converged = steps->solve_and_write(resumes).status == output::RunStatus::converged;
         steps->print(log);

@@ -355,9 +355,9 @@ namespace slipstick::app
   }
 
   template <int dim>
-  bool StepProblem<dim>::spread_still_forces(const tfeti::DistributedVector &multipliers)
+  bool StepProblem<dim>::spread_still_forces(const tfeti::DistributedVector &multipliers, const double largest_forces)
   {
-    constexpr double rounding = 1e-8; // of all multipliers
+    constexpr double rounding = 1e-8; // of all multipliers and nodal loads, also those of earlier steps
     if (held_still.empty())
       return false;
     const auto         &kind  = dual_ptr->constraints().kind;
@@ -374,7 +374,7 @@ namespace slipstick::app
     Eigen::VectorXd more = Eigen::VectorXd::Zero(held_still.front().amplitudes.size());
     for (unsigned int m = 0; m < held_still.size(); ++m)
       more += work[m] * held_still[m].amplitudes;
-    if (more.norm() <= rounding * std::sqrt(work.back()))
+    if (more.norm() <= rounding * std::max({std::sqrt(work.back()), largest_forces, largest_load_so_far}))
       return false;
     still_work = still_work.size() > 0 ? Eigen::VectorXd(still_work + more) : more;
     return true;

@@ -236,7 +236,7 @@ namespace slipstick::app
     constexpr unsigned int most_repetitions = 3; // each leaves the part that the forces change by: about gap over size
     const double           t                = discrete_scene().load_factors[step];
     for (unsigned int n = 0; n < most_repetitions && dual_solution.status == qp::Status::converged &&
-                             problem.spread_still_forces(answer->recovery.multipliers);
+                             problem.spread_still_forces(answer->recovery.multipliers, dual_solution.largest_forces);
          ++n)
       {
         problem.reload(t);

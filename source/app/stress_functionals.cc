@@ -60,7 +60,8 @@ namespace slipstick::app
           });
         if (near != around.end())
           list.back().reason = "not resolved, or without limit, at " + near->of.what;
-        const auto cells = mechanics::cells_at(solver.mesh(), solver.spaces(), stress, around);
+        list.back().is_singular = near != around.end();
+        const auto cells        = mechanics::cells_at(solver.mesh(), solver.spaces(), stress, around);
         if (!note_unresolved(around, cells, list.back()) && near == around.end() && !is_named)
           return;
         const auto regular = mechanics::stress_places(solver.mesh(), solver.spaces(), stress, around).von_mises;
@@ -222,23 +223,19 @@ namespace slipstick::app
                                              const std::vector<mechanics::SingularPoint<dim>> &acting,
                                              const std::vector<mechanics::Surroundings<dim>>  &peaks,
                                              const double                                      t,
-                                             const std::vector<std::string>                   &quantities)
+                                             const RequestedBars                              &requested)
   {
-    const auto names = [&](const std::string &text) { // a quantity, or the beginning of the names of several
-      return std::any_of(quantities.begin(), quantities.end(), [&](const std::string &quantity) {
-        return quantity.rfind(text, 0) == 0;
-      });
-    };
     std::vector<Functional>      list;
     const StressFunctionals<dim> of_scene(solver, answer, t);
     auto                         around = of_scene.surroundings(acting);
     around.insert(around.end(), peaks.begin(), peaks.end());
-    if (quantities.empty() || names("max_von_mises") || names("max_regular_von_mises"))
-      of_scene.add_largest(around, names("max_regular_von_mises"), list);
+    const bool is_named = requested.is_goal("max_regular_von_mises");
+    if (is_named || requested.includes_some_of("max_von_mises"))
+      of_scene.add_largest(around, is_named, list);
     const auto &all = solver.discrete_scene().probes;
     for (unsigned int k = 0; k < all.size(); ++k)
-      if (all[k].ends.size() == 1 &&
-          (quantities.empty() || names(all[k].name + ".stress_") || names(all[k].name + ".von_mises")))
+      if (all[k].ends.size() == 1 && (requested.includes_some_of(all[k].name + ".stress_") ||
+                                      requested.includes_some_of(all[k].name + ".von_mises")))
         of_scene.add_probe(all[k].name, all[k].body, probes.positions()[k][0].position, around, list);
     return list;
   }
@@ -249,12 +246,12 @@ namespace slipstick::app
                                                       const std::vector<mechanics::SingularPoint<2>> &,
                                                       const std::vector<mechanics::Surroundings<2>> &,
                                                       const double,
-                                                      const std::vector<std::string> &);
+                                                      const RequestedBars &);
   template std::vector<Functional> stress_functionals(const StepSolver<3> &,
                                                       const mechanics::Probes<3> &,
                                                       const StepSolution &,
                                                       const std::vector<mechanics::SingularPoint<3>> &,
                                                       const std::vector<mechanics::Surroundings<3>> &,
                                                       const double,
-                                                      const std::vector<std::string> &);
+                                                      const RequestedBars &);
 } // namespace slipstick::app

@@ -389,6 +389,10 @@ namespace slipstick::scene
         throw parameters.error(section + "/Refine towards",
                                "body '" + name + "' has no boundary '" + boundary + "'",
                                suggest_name(boundary, boundaries));
+    if (!result.refined_boundaries.empty() && !parameters.is_set(section + "/Refine levels"))
+      throw parameters.error(section + "/Refine towards",
+                             "has no effect without Refine levels",
+                             "set how many times, for example: set Refine levels = 1");
     if (result.refined_boundaries.empty() && body.boundary_refinements > 0)
       throw parameters.error(section + "/Refine levels",
                              "no boundary is named in Refine towards",

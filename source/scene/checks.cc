@@ -171,7 +171,7 @@ namespace slipstick::scene
   template <int dim>
   std::vector<std::string> warnings(const Scene<dim> &scene)
   {
-    std::vector<std::string> texts;
+    std::vector<std::string> texts = scene.warnings;
     if (scene.plane_state != PlaneState::plane_stress && scene.discretization.element == ElementKind::standard)
       for (const Material &material : scene.materials)
         if (material.poisson_ratio > locking_poisson_ratio)

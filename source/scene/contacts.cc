@@ -1,4 +1,5 @@
 #include <slipstick/base/nearest_name.h>
+#include <slipstick/base/text.h>
 #include <slipstick/scene/boundary_part.h>
 #include <slipstick/scene/declare.h>
 #include <slipstick/scene/sections.h>
@@ -10,6 +11,7 @@ namespace slipstick::scene
 {
   namespace
   {
+    const std::string acts_on = "Slip bound acts on";
 
     /// Reads a formula; if it is a number, it must not be negative.
     template <int dim>
@@ -63,7 +65,7 @@ namespace slipstick::scene
                  parameter.meaning);
       }
     add_choice(prm,
-               "Slip bound acts on",
+               acts_on,
                only_closed,
                Choices<bool>{{"boundary", false}, {"contact", true}},
                "Tresca: on the whole slave boundary, open nodes included, or where it is in contact");
@@ -95,6 +97,37 @@ namespace slipstick::scene
       }
     pair.law.acts_when_open = pair.law.acts_when_open && !only_closed;
     pair.offset             = Field<dim>(offset, parameters.locate(section + "/Offset"));
+  }
+
+  template <int dim>
+  std::vector<std::string> ContactLawSection<dim>::without_effect(const Parameters  &parameters,
+                                                                  const std::string &section) const
+  {
+    std::map<std::string, std::vector<std::string>> laws{{acts_on, {"Tresca"}}}; // by parameter
+    std::map<std::string, std::string>              harmless{{acts_on, "boundary"}};
+    for (const auto &kind : law_kinds<dim>())
+      for (const LawParameter &parameter : kind.parameters)
+        {
+          laws[parameter.name].push_back(kind.name);
+          harmless[parameter.name] = parameter.default_text.empty() ? "0" : parameter.default_text;
+        }
+    std::vector<std::string> warnings;
+    for (const auto &[parameter, of_laws] : laws)
+      {
+        const std::string path  = section + "/" + parameter;
+        const auto        value = parameters.value(path);
+        if (!value || std::count(of_laws.begin(), of_laws.end(), law) > 0 || parameters.is_override(section + "/Law"))
+          continue;
+        // the default is harmless: a .prm printed by the program sets everything
+        const auto number = parse_number(*value);
+        if (trim(*value) == harmless.at(parameter) || (number && *number == 0))
+          continue;
+        const std::string reason = "has no effect with Law = " + law + ", it belongs to " + join_names(of_laws);
+        if (parameters.is_override(path))
+          throw parameters.error(path, reason, "leave it out, or set Law as well");
+        warnings.push_back(parameters.locate(path) + " = '" + *value + "' " + reason + "; leave it out");
+      }
+    return warnings;
   }
 
   template <int dim>
@@ -216,7 +249,11 @@ namespace slipstick::scene
   {
     ContactSearch<dim> search;
     search.automatic = automatic;
-    search.reach     = reach;
+    if (reach > 0 && !parameters.is_set("Contact search/Mode"))
+      throw parameters.error("Contact search/Reach",
+                             "has no effect without a search",
+                             "set Contact search/Mode = automatic, or leave it out");
+    search.reach = reach;
     law.read(parameters, "Contact search", search.pair);
     return search;
   }

@@ -183,7 +183,16 @@ namespace slipstick::scene
   Traction<dim> TractionSection<dim>::read(const Parameters &parameters, const Scene<dim> &scene) const
   {
     const std::string section = "Traction " + name;
-    Traction<dim>     traction;
+    bool              is_load = parameters.is_set(section + "/Pressure");
+    for (unsigned int d = 0; d < dim; ++d)
+      is_load = is_load || parameters.is_set(section + "/Traction " + axes[d]);
+    require_load(!is_load, // 0 is allowed if it is set: a study may begin with it
+                 section,
+                 std::string("Pressure, Traction x") + (dim == 3 ? ", y or z" : " or Traction y"),
+                 "Tractions",
+                 name,
+                 parameters);
+    Traction<dim> traction;
     traction.name       = name;
     traction.where      = read_boundary(boundary, section + "/Boundary", parameters, scene.bodies);
     traction.components = read_components<dim>(components, section + "/Traction", parameters);

@@ -184,6 +184,11 @@ namespace slipstick::scene
     return setting != nullptr && !setting->is_section;
   }
 
+  bool Parameters::is_override(const std::string &path) const
+  {
+    return is_set(path) && find(path)->is_override;
+  }
+
   bool Parameters::has_section(const std::string &path) const
   {
     return std::any_of(settings.begin(), settings.end(), [&path](const Setting &setting) {

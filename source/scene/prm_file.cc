@@ -230,7 +230,7 @@ namespace slipstick::scene
       if (value.find_first_of("#\n") != std::string::npos || (!value.empty() && value.back() == '\\'))
         throw InputError("'" + where + "': a value cannot contain '#' or a line break, or end with a backslash",
                          "leave these characters out");
-      return {path, value, where, false};
+      return {path, value, where, false, true};
     }
   } // namespace
 

@@ -229,7 +229,11 @@ namespace slipstick::scene
       for (const auto &section : pretensions)
         scene.pretensions.push_back(section.read(parameters, scene));
       for (const auto &section : contacts)
-        scene.contacts.push_back(section.read(parameters, scene));
+        {
+          scene.contacts.push_back(section.read(parameters, scene));
+          for (const auto &warning : section.law.without_effect(parameters, "Contact " + section.name))
+            scene.warnings.push_back(warning);
+        }
       scene.contact_search = contact_search.read(parameters);
       for (const auto &section : probes)
         scene.probes.push_back(section.read(parameters, scene));
@@ -258,6 +262,16 @@ namespace slipstick::scene
               adaptivity.skips_unknown = true;
             }
         }
+    }
+
+    /// Refuses limits of a refinement that does not take place. Max unknowns is allowed: it guards scenes of any kind.
+    void check_limits(const AdaptivityOptions &adaptivity, const Parameters &parameters)
+    {
+      if (const std::string path = "Adaptivity/Max meshes";
+          parameters.is_set(path) && !adaptivity.refines() && adaptivity.max_meshes != AdaptivityOptions().max_meshes)
+        throw parameters.error(path,
+                               "has no effect: no accuracy is requested, and the mesh is not refined",
+                               "set Accuracy = 1 %, or Mesh = adaptive, or leave it out");
     }
 
     /// Checks that the goals are quantities of the scene.
@@ -324,6 +338,7 @@ namespace slipstick::scene
     scene.name       = std::filesystem::path(file).stem().string();
     check_scene(scene, parameters);
     resolve_mesh(declared.adaptivity, scene);
+    check_limits(declared.adaptivity, parameters);
     check_goals(declared.adaptivity, scene, parameters);
     if (adaptivity)
       *adaptivity = declared.adaptivity;

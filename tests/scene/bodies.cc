@@ -81,6 +81,7 @@ TEST(bodies, values_must_make_sense)
   body_refused("set Shape = disc\nset Radius = 2\nset Cells along arc = 30\n", {"multiple of 4"});
   body_refused("set Shape = half disc\nset Radius = 2\nset Cells along arc = 5\n", {"even number"});
   body_refused("set Size = 1, 1\nset Refine levels = 1\n", {"no boundary is named in Refine towards"});
+  body_refused("set Size = 1, 1\nset Refine towards = top\n", {"Refine towards = 'top'", "set Refine levels = 1"});
   body_refused("set Size = 1, 1\nset Refine towards = botom\n", {"has no boundary 'botom'", "did you mean 'bottom'"});
   body_refused("set Size = 1, 1\nset Mirror = z\n", {"'z'", "none, x, y"});
   body_refused("set Shape = disc\nset Radius = 2\n", {"has no boundary 'left'", "arc"}, "left");

@@ -104,6 +104,41 @@ TEST(contact_sections, search)
   refused({"Contact search/Reach=-1"}, {"Reach", ">= 0"});
 }
 
+TEST(contact_sections, reach_of_no_search_is_refused)
+{
+  refused({"Contact search/Reach=0.1"}, {"Contact search/Reach = '0.1'", "no effect", "Contact search/Mode = automatic"});
+  EXPECT_EQ(box({"Contact search/Reach=0.1", "Contact search/Mode=declared"}).contact_search.reach, 0.1);
+}
+
+TEST(contact_sections, parameters_of_other_laws)
+{
+  const std::vector<std::string> given = {"Contact circle/Friction coefficient=0.3"};
+  refused(given, {"--set", "Friction coefficient = '0.3'", "no effect with Law = Tresca", "Coulomb, cohesion"});
+  refused({"Contact circle/Shear limit=7"}, {"Shear limit = '7'", "it belongs to cohesion"});
+  EXPECT_TRUE(scene::warnings(box(with(given, {"Contact circle/Law=Coulomb"}))).empty()); // the bound is in the file
+  EXPECT_TRUE(scene::warnings(box({"Contact circle/Friction coefficient=0"})).empty());
+  EXPECT_TRUE(scene::warnings(box({"Contact circle/Shear limit=none"})).empty());
+
+  TemporaryDirectory directory;
+  const auto         in_file = [&](const std::string &law, const std::string &more) {
+    std::string       text = read_text(prm("box_on_circle"));
+    const std::string old  = "set Law        = Tresca";
+    const auto        at   = text.find(old);
+    EXPECT_NE(at, std::string::npos);
+    text.replace(at, old.size(), "set Law = " + law + "\n" + more);
+    return scene::warnings(scene::read_scene(directory.write("box.prm", text), {}));
+  };
+  EXPECT_TRUE(in_file("Tresca", "set Slip bound acts on = contact").empty());
+  for (const std::string law : {"Coulomb", "frictionless", "bonded"})
+    {
+      const auto warnings =
+        in_file(law, std::string("set Slip bound acts on = contact\n") + (law == "Coulomb" ? "set Friction coefficient = 1" : ""));
+      ASSERT_EQ(warnings.size(), 2u);
+      expect_parts(warnings[0], {"box.prm:", "Contact circle/Slip bound = '500' has no effect with Law = " + law});
+      expect_parts(warnings[1], {"Slip bound acts on = 'contact'", "it belongs to Tresca"});
+    }
+}
+
 TEST(contact_sections, obstacles_of_all_shapes)
 {
   const std::vector<std::string> half  = {"Obstacles=disc, o", "Obstacle o/Shape=half plane", "Obstacle o/Point=1, 2"};

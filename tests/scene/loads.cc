@@ -117,6 +117,9 @@ TEST(loads, that_load_nothing)
 {
   loads_refused({"Point load pull/Force y=0"}, {"Point load pull", "is no load", "set Force x or Force y"});
   loads_refused({"Body force wheel/Angular velocity=0"}, {"Body force wheel", "is no load"});
+  const std::string list = "Tractions=pressed, more", where = "Traction more/Boundary=box/top";
+  refused({list, where}, {"Traction more", "is no load", "set Pressure, Traction x or Traction y", "list Tractions"});
+  EXPECT_EQ(box({list, where, "Traction more/Pressure=0"}).tractions.size(), 2u); // begins a study
 }
 
 TEST(loads, of_bodies_without_density_or_expansion)

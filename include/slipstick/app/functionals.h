@@ -23,7 +23,23 @@ namespace slipstick::app
     double                       shortfall         = 0;     // of a place with an error, if the value itself has none
     bool                         is_resolvable     = false; // finer cells remove the reason
     bool                         is_infinite       = false; // the reason: no mesh has an estimate
-    std::string                  note              = "";    // what the quantity covers, if its name does not say it
+    bool                         is_singular   = false; // the reason: a singular point, where stresses may be infinite
+    bool                         is_on_request = false; // of interest only as a goal
+    std::string                  note          = "";    // what the quantity covers, if its name does not say it
+  };
+
+  /// The quantities that get error bars.
+  struct RequestedBars
+  {
+    bool                     all = false; // all that the scene has, except those of interest only as goals
+    std::vector<std::string> goals;       // these in any case
+
+    bool is_goal(const std::string &quantity) const;
+
+    bool includes(const Functional &functional) const;
+
+    /// Whether names of requested quantities may begin with @p text.
+    bool includes_some_of(const std::string &text) const;
   };
 
   /// The quantities of a scene, from multipliers and displacements of the last load step. Members are collective.

@@ -1,6 +1,7 @@
 // Errors of result quantities by dual weighted residuals, for a fixed contact state.
 #pragma once
 
+#include <slipstick/app/functionals.h>
 #include <slipstick/app/step_solver.h>
 #include <slipstick/mechanics/probes.h>
 #include <slipstick/mechanics/singular_points.h>
@@ -19,6 +20,7 @@ namespace slipstick::app
     std::string                  reason;                // why there is no estimate
     bool                         is_resolvable = false; // finer cells remove the reason
     bool                         is_infinite   = false; // the reason: no mesh has an estimate
+    bool                         is_singular   = false; // the reason: a singular point, where stresses may be infinite
     double                       value         = 0;     // of the quantity
     double                       correction    = 0;     // sum over the cells, to be added to the value
     double                       absolute      = 0;     // sum of the magnitudes
@@ -35,7 +37,7 @@ namespace slipstick::app
   /// slipping nodes follows the normal force; in space it keeps its direction, and the tangential force is the sum of
   /// the magnitudes at the nodes.
   /// @param peaks peaks of the contact pressure, where stresses are not resolved.
-  /// @param quantities quantities whose errors are requested; empty: all.
+  /// @param requested quantities whose errors are requested: all of its goals have one, if only a reason.
   /// Changes the dual problem of @p solver, which is set to the last load step. Collective.
   template <int dim>
   std::vector<GoalError> goal_errors(StepSolver<dim>                                 &solver,
@@ -43,5 +45,5 @@ namespace slipstick::app
                                      const StepSolution                              &answer,
                                      const double                                     t,
                                      const std::vector<mechanics::Surroundings<dim>> &peaks,
-                                     const std::vector<std::string>                  &quantities);
+                                     const RequestedBars                             &requested);
 } // namespace slipstick::app

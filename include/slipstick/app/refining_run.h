@@ -50,6 +50,9 @@ namespace slipstick::app
     /// been reached; empty: there is one, or none is needed.
     std::string why_to_stop(const Run<dim> &steps, const output::Summary &summary);
 
+    /// What to ask for in place of a largest stress that is infinite, as far as the meshes show. Empty: none is. Collective.
+    std::string remedy_for_stress(const Run<dim> &steps, const output::Summary &summary) const;
+
     /// Marks the cells to be refined for the next mesh. @return why there is no next mesh; empty: there is one.
     std::string mark_next(const Run<dim> &steps, const output::Summary &summary);
 
@@ -76,11 +79,11 @@ namespace slipstick::app
     std::string                        without_estimate;   // a counted goal and the reason; empty: none
     bool                               may_settle = false; // values without an estimate grow little or not at all
     unsigned int                       n_without  = 0;     // consecutive meshes
-    std::map<std::string, double>      values;             // on rank 0, on the previous mesh
-    double                             bar_over_error = 1;
-    bool                               is_known       = false; // the error
-    bool                               is_accurate    = false; // that error ...
-    bool                               is_confirmed   = false; // ... and there is a previous mesh to compare with
-    bool                               reached        = false;
+    std::map<std::string, std::vector<double>> values;     // on rank 0, of the goals with bars on all meshes so far
+    double                                     bar_over_error = 1;
+    bool                                       is_known       = false; // the error
+    bool                                       is_accurate    = false; // that error ...
+    bool                                       is_confirmed = false; // ... and there is a previous mesh to compare with
+    bool                                       reached      = false;
   };
 } // namespace slipstick::app

@@ -19,14 +19,14 @@ namespace slipstick::app
   class Run
   {
   public:
-    /// @param wanted quantities that get error bars after the last load step; empty list: all; no value: none.
+    /// @param wanted quantities that get error bars after the last load step; no value: none.
     /// @param refinement local refinement, if any.
-    Run(const scene::Scene<dim>                &scene,
-        const output::OutputDirectory          &directory,
-        const Log                              &log,
-        const MPI_Comm                          comm,
-        std::optional<std::vector<std::string>> wanted     = {},
-        mesh::Refinement                       *refinement = nullptr);
+    Run(const scene::Scene<dim>       &scene,
+        const output::OutputDirectory &directory,
+        const Log                     &log,
+        const MPI_Comm                 comm,
+        std::optional<RequestedBars>   wanted     = {},
+        mesh::Refinement              *refinement = nullptr);
 
     /// The first load step will begin from the contact on another mesh.
     void start_from(contact::ContactOfMesh other)
@@ -120,27 +120,27 @@ namespace slipstick::app
     /// Adds times, memory and warnings to @p summary.
     void describe_run(output::Summary &summary) const;
 
-    const output::OutputDirectory          &directory;
-    const Log                              &log;
-    const MPI_Comm                          comm;
-    std::optional<std::vector<std::string>> wanted; // quantities with error bars
-    const bool                              refines;
-    StageClock                              clock;
-    StepSolver<dim>                         solver;
-    const scene::Scene<dim>                &scene; // including the contact pairs found by the search
-    mechanics::Probes<dim>                  probes;
-    std::unique_ptr<StepSolution>           last;   // of the last load step
-    std::vector<GoalError>                  errors; // of its quantities
-    std::vector<output::ContactStep>        contact_steps;
-    TotalSlip                               total_slip;
-    double                                  largest_force = 0; // of the load steps so far, on rank 0 [N]
-    std::vector<std::string>                warnings;
-    std::set<std::string>                   warned_about;
-    std::optional<output::Summary>          finished_steps;   // of all load steps that have ended
-    unsigned int                            first_step   = 0; // of this process
-    double                                  steps_began  = 0; // [s]
-    unsigned int                            kept_steps   = 0; // in the tables on the disk
-    double                                  kept_at      = 0; // when they were written [s]
-    double                                  writing_time = 0; // that this took [s]
+    const output::OutputDirectory   &directory;
+    const Log                       &log;
+    const MPI_Comm                   comm;
+    std::optional<RequestedBars>     wanted; // quantities with error bars
+    const bool                       refines;
+    StageClock                       clock;
+    StepSolver<dim>                  solver;
+    const scene::Scene<dim>         &scene; // including the contact pairs found by the search
+    mechanics::Probes<dim>           probes;
+    std::unique_ptr<StepSolution>    last;   // of the last load step
+    std::vector<GoalError>           errors; // of its quantities
+    std::vector<output::ContactStep> contact_steps;
+    TotalSlip                        total_slip;
+    double                           largest_force = 0; // of the load steps so far, on rank 0 [N]
+    std::vector<std::string>         warnings;
+    std::set<std::string>            warned_about;
+    std::optional<output::Summary>   finished_steps;   // of all load steps that have ended
+    unsigned int                     first_step   = 0; // of this process
+    double                           steps_began  = 0; // [s]
+    unsigned int                     kept_steps   = 0; // in the tables on the disk
+    double                           kept_at      = 0; // when they were written [s]
+    double                           writing_time = 0; // that this took [s]
   };
 } // namespace slipstick::app

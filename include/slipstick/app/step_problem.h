@@ -144,8 +144,10 @@ namespace slipstick::app
     }
     /// Spreads what the auxiliary supports bear in this solution over the bodies, as inertia does, so that the choice of
     /// these supports does not matter: friction across gaps may do work along the motions (at each side it acts at
-    /// undeformed points). The loads must then be set again. Collective. @return whether it was more than rounding.
-    bool spread_still_forces(const tfeti::DistributedVector &multipliers);
+    /// undeformed points). The loads must then be set again. Collective.
+    /// @param largest_forces norm of the multipliers, the largest of all steps so far [N].
+    /// @return whether it was more than rounding.
+    bool spread_still_forces(const tfeti::DistributedVector &multipliers, const double largest_forces);
 
     /// The resultant of these fields.
     Resultant still_forces() const;

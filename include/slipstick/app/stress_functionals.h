@@ -10,8 +10,8 @@ namespace slipstick::app
   /// infinite energy; the rest of the error of the recovered stress is Functional::local_error.
   /// @param acting point supports and point loads whose force is not negligible.
   /// @param peaks peaks of the contact pressure.
-  /// @param quantities the quantities needed; empty: all, but max_regular_von_mises only if max_von_mises has no error
-  /// bar because of a singular point.
+  /// @param requested the quantities needed; unless it is a goal, max_regular_von_mises only if max_von_mises has no
+  /// error bar because of a singular point.
   /// Collective.
   template <int dim>
   std::vector<Functional> stress_functionals(const StepSolver<dim>                            &solver,
@@ -20,5 +20,5 @@ namespace slipstick::app
                                              const std::vector<mechanics::SingularPoint<dim>> &acting,
                                              const std::vector<mechanics::Surroundings<dim>>  &peaks,
                                              const double                                      t,
-                                             const std::vector<std::string>                   &quantities);
+                                             const RequestedBars                              &requested);
 } // namespace slipstick::app

@@ -49,6 +49,9 @@ namespace slipstick::scene
 
     bool is_set(const std::string &path) const;
 
+    /// Whether --set sets the parameter.
+    bool is_override(const std::string &path) const;
+
     /// Whether the file opens the subsection @p path, or anything in it is set.
     bool has_section(const std::string &path) const;
 

@@ -12,7 +12,8 @@ namespace slipstick::scene
     std::string path; // "Contact circle/Law"; of a subsection: "Contact circle"
     std::string value;
     std::string where; // "prm/box.prm:12" or "--set Contact circle/Law=Tresca"
-    bool        is_section = false;
+    bool        is_section  = false;
+    bool        is_override = false;
   };
 
   /// The settings of a .prm file in their order, then those of the overrides "Section/Sub/Name=value". The syntax

@@ -361,6 +361,7 @@ namespace slipstick::scene
     SolverOptions                            solver;
     OutputOptions                            output;
     std::string                              parameters; // the complete .prm as interpreted
+    std::vector<std::string>                 warnings;   // about the .prm
 
     bool has_contact() const
     {
