@@ -1,5 +1,7 @@
 #include "tools.h"
 
+#include <slipstick/scene/checks.h>
+
 using namespace slipstick;
 using namespace slipstick::test;
 
@@ -106,7 +108,8 @@ TEST(contact_sections, search)
 
 TEST(contact_sections, reach_of_no_search_is_refused)
 {
-  refused({"Contact search/Reach=0.1"}, {"Contact search/Reach = '0.1'", "no effect", "Contact search/Mode = automatic"});
+  refused({"Contact search/Reach=0.1"},
+          {"Contact search/Reach = '0.1'", "no effect", "Contact search/Mode = automatic"});
   EXPECT_EQ(box({"Contact search/Reach=0.1", "Contact search/Mode=declared"}).contact_search.reach, 0.1);
 }
 
@@ -131,8 +134,9 @@ TEST(contact_sections, parameters_of_other_laws)
   EXPECT_TRUE(in_file("Tresca", "set Slip bound acts on = contact").empty());
   for (const std::string law : {"Coulomb", "frictionless", "bonded"})
     {
-      const auto warnings =
-        in_file(law, std::string("set Slip bound acts on = contact\n") + (law == "Coulomb" ? "set Friction coefficient = 1" : ""));
+      const auto warnings = in_file(law,
+                                    std::string("set Slip bound acts on = contact\n") +
+                                      (law == "Coulomb" ? "set Friction coefficient = 1" : ""));
       ASSERT_EQ(warnings.size(), 2u);
       expect_parts(warnings[0], {"box.prm:", "Contact circle/Slip bound = '500' has no effect with Law = " + law});
       expect_parts(warnings[1], {"Slip bound acts on = 'contact'", "it belongs to Tresca"});
