@@ -122,10 +122,8 @@ namespace slipstick::scene
         const auto number = parse_number(*value);
         if (trim(*value) == harmless.at(parameter) || (number && *number == 0))
           continue;
-        const std::string reason = "has no effect with Law = " + law + ", it belongs to " + join_names(of_laws);
-        if (parameters.is_override(path))
-          throw parameters.error(path, reason, "leave it out, or set Law as well");
-        warnings.push_back(parameters.locate(path) + " = '" + *value + "' " + reason + "; leave it out");
+        warnings.push_back(parameters.locate(path) + " = '" + *value + "' has no effect with Law = " + law +
+                           ", it belongs to " + join_names(of_laws) + "; leave it out, or set Law as well");
       }
     return warnings;
   }

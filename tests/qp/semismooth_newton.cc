@@ -440,30 +440,6 @@ TEST(SemismoothNewton, high_friction_is_solved_by_distances_from_the_cone)
   EXPECT_GE(n_solved({20., 50., 100.}, 100, 6), 285u);
 }
 
-// So that every face admits these directions.
-TEST(SemismoothNewton, entries_without_bounds_come_first_while_the_others_stay)
-{
-  for (unsigned int seed = 0; seed < 10; ++seed)
-    {
-      const Contact p(seed, 12, {0.05, 0.2});
-      const auto    directions = std::make_shared<DirectionStore<Vector>>(200);
-      semismooth_newton(p.problem,
-                        1.,
-                        p.d,
-                        p.set,
-                        NewtonStart<Vector>{Vector(p.d.size(), 0.), {}, directions},
-                        Goal(1e-10, 1.));
-      ASSERT_GT(directions->size(), 0u);
-      double moved = 0;
-      for (std::size_t i = 0; i < p.d.size(); ++i)
-        if (i % 3 == 0)
-          moved = std::max(moved, std::abs((*directions)[0].p[i]));
-        else
-          EXPECT_EQ((*directions)[0].p[i], 0.);
-      EXPECT_GT(moved, 0.);
-    }
-}
-
 TEST(SemismoothNewton, directions_of_an_earlier_solve_save_multiplications)
 {
   unsigned int n_alone = 0, n_handed = 0;

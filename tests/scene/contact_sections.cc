@@ -115,9 +115,13 @@ TEST(contact_sections, reach_of_no_search_is_refused)
 
 TEST(contact_sections, parameters_of_other_laws)
 {
-  const std::vector<std::string> given = {"Contact circle/Friction coefficient=0.3"};
-  refused(given, {"--set", "Friction coefficient = '0.3'", "no effect with Law = Tresca", "Coulomb, cohesion"});
-  refused({"Contact circle/Shear limit=7"}, {"Shear limit = '7'", "it belongs to cohesion"});
+  const std::vector<std::string> given      = {"Contact circle/Friction coefficient=0.3"};
+  const auto                     of_coulomb = scene::warnings(box(given)),
+             of_cohesion                    = scene::warnings(box({"Contact circle/Shear limit=7"}));
+  ASSERT_EQ(of_coulomb.size(), 1u);
+  expect_parts(of_coulomb[0], {"Friction coefficient = '0.3'", "no effect with Law = Tresca", "Coulomb, cohesion"});
+  ASSERT_EQ(of_cohesion.size(), 1u);
+  expect_parts(of_cohesion[0], {"Shear limit = '7'", "it belongs to cohesion"});
   EXPECT_TRUE(scene::warnings(box(with(given, {"Contact circle/Law=Coulomb"}))).empty()); // the bound is in the file
   EXPECT_TRUE(scene::warnings(box({"Contact circle/Friction coefficient=0"})).empty());
   EXPECT_TRUE(scene::warnings(box({"Contact circle/Shear limit=none"})).empty());

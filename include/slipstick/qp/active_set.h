@@ -91,13 +91,6 @@ namespace slipstick::qp
         return result;
       }
 
-      std::vector<bool> without_bounds() const
-      {
-        std::vector<bool> result = bounded;
-        result.flip();
-        return result;
-      }
-
       const Box<Vector> &box() const
       {
         return set.box;

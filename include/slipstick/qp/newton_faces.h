@@ -97,33 +97,6 @@ namespace slipstick::qp::detail
       fill_gradient(face, at);
     }
 
-    /// The start of the first problem: solves for the entries without bounds (gluing, supports) while the others stay,
-    /// unless that leaves motions open. F x of @p at must be known. The first set is then predicted from the gaps
-    /// that the forces in contact leave, not from subdomains that do not fit yet; and since the directions leave all
-    /// entries with bounds alone, every later face admits them (doc/decisions/0164).
-    void fit_unbounded(Point &at)
-    {
-      if (store.size() > 0)
-        return;
-      const std::vector<bool> is_unbounded = set.without_bounds();
-      const Face              face         = problem.face(is_unbounded, std::vector<Tie>(), std::vector<Turn>());
-      if (!face.is_regular())
-        return;
-      const auto bounded_entries = [&is_unbounded](const Vector &p) {
-        std::vector<double> result;
-        for (std::size_t i = 0; i < is_unbounded.size(); ++i)
-          if (!is_unbounded[i])
-            result.push_back(p.begin()[i]);
-        return result;
-      };
-      const Vector center(at.x);
-      FaceSolver<Vector, Face>
-        solver(face, d, store, bounded_entries, options.face, {}, is_singular ? options.largest_regularization : 0.);
-      const double first = solver.start(at.x, at.Fx, at.error_of_Fx, center);
-      take(solver.solve_symmetric(std::max(least_residual(goal.tolerance), options.forcing * first)), at);
-      restore_balance(face, goal.tolerance, at);
-    }
-
     /// `next` becomes the solution on the face, up to a part of the present residual.
     /// @param merit natural residual of `now`. @param tolerance of faces, over the reference.
     void solve(const Face &face, const double merit, const double tolerance, const Point &now, Point &next)
@@ -143,25 +116,22 @@ namespace slipstick::qp::detail
         regularization(merit));
       const double first = solver.start(std::move(next.x), std::move(next.Fx), now.error_of_Fx, center);
       const double target =
-        std::min(std::max(least_residual(tolerance),
+        std::min(std::max(options.last_forcing * tolerance * goal.reference,
                           (is_singular ? options.singular_forcing : options.forcing) * std::min(first, merit)),
                  std::max(rounding_of_residual * now.error_of_Fx,
                           options.sharpening * solved.least_of_earlier(set.sides(), problem.reduction())));
       auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
       if (is_singular || has_wide_stiffnesses)
         solved.add(set.sides(), result.residual);
-      take(std::move(result), next);
+      counts += result.counts;
+      next.x           = std::move(result.x);
+      next.Fx          = std::move(result.product);
+      next.error_of_Fx = result.error;
       restore_balance(face, tolerance, next);
       fill_gradient(face, next);
     }
 
   private:
-    // To which faces are solved at most.
-    double least_residual(const double tolerance) const
-    {
-      return options.last_forcing * tolerance * goal.reference;
-    }
-
     // The largest weight of a residual over the smallest, which is 1.
     static double ratio_of_weights(const Problem &problem, const Vector &d)
     {
@@ -191,7 +161,7 @@ namespace slipstick::qp::detail
       if (!(missing > force_rounding * qp::norm(next.x, problem.reduction())))
         return;
       add(1., balanced, next.x);
-      if (norm * missing <= options.face.accuracy * least_residual(tolerance))
+      if (norm * missing <= options.face.accuracy * options.last_forcing * tolerance * goal.reference)
         {
           next.error_of_Fx = std::hypot(next.error_of_Fx, norm * missing);
           return;
@@ -199,14 +169,6 @@ namespace slipstick::qp::detail
       problem.multiply(balanced, product);
       ++counts.hessian_multiplications;
       add(1., product, next.Fx);
-    }
-
-    void take(FaceSolution<Vector> result, Point &at)
-    {
-      counts += result.counts;
-      at.x           = std::move(result.x);
-      at.Fx          = std::move(result.product);
-      at.error_of_Fx = result.error;
     }
 
     // Whether any process has ties.

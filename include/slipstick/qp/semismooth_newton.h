@@ -271,7 +271,6 @@ namespace slipstick::qp
         face->balance(now.x);
         problem.multiply(now.x, now.Fx);
         ++counts.hessian_multiplications;
-        faces.fit_unbounded(now);
         faces.fill_gradient(*face, now);
         path.begin();
         return true;
