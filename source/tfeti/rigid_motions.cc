@@ -260,10 +260,19 @@ namespace slipstick::tfeti
 
   Eigen::VectorXd BodyMotions::loads_of_subdomains() const
   {
-    std::vector<Eigen::VectorXd> own;                                        // by subdomain
-    Eigen::MatrixXd              sums = Eigen::MatrixXd::Zero(n_motions, 2); // of these; number of subdomains
+    const Eigen::VectorXd of_bodies   = loads();
+    const auto            is_balanced = [&](const SubdomainSystem &subdomain) {
+      return of_bodies.segment(subdomain.body() * motions_of_body, motions_of_body).isZero(0.);
+    };
+    std::vector<Eigen::VectorXd> own;                           // by subdomain
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(n_motions, 2); // of balanced bodies; numbers of subdomains
     for (const auto &subdomain : subdomains)
       {
+        if (!is_balanced(*subdomain))
+          {
+            own.emplace_back(subdomain->kernel().transpose() * subdomain->load());
+            continue;
+          }
         SumsOfLoads of_this(motions_of_body);
         of_this.add(0, subdomain->kernel(), subdomain->load());
         own.push_back(of_this.without_rounding());
@@ -272,14 +281,16 @@ namespace slipstick::tfeti
         sums.col(1).segment(first, motions_of_body).array() += 1;
       }
     MPI_Allreduce(MPI_IN_PLACE, sums.data(), sums.size(), MPI_DOUBLE, MPI_SUM, comm);
-    const Eigen::VectorXd rounding = (loads().array() == 0).select(sums.col(0).array() / sums.col(1).array(), 0.);
-    Eigen::VectorXd       result(motions_of_body * subdomains.size());
+    Eigen::VectorXd result(motions_of_body * subdomains.size());
     for (unsigned int p = 0; p < subdomains.size(); ++p)
       {
-        const Eigen::Index first = subdomains[p]->body() * motions_of_body;
-        result.segment(p * motions_of_body, motions_of_body) =
-          own[p] -
-          subdomains[p]->body_modes().transpose().partialPivLu().solve(rounding.segment(first, motions_of_body));
+        const auto        &subdomain = *subdomains[p];
+        const Eigen::Index first     = subdomain.body() * motions_of_body;
+        if (is_balanced(subdomain))
+          own[p] -= subdomain.body_modes().transpose().partialPivLu().solve(
+            (sums.col(0).segment(first, motions_of_body).array() / sums.col(1).segment(first, motions_of_body).array())
+              .matrix());
+        result.segment(p * motions_of_body, motions_of_body) = own[p];
       }
     return result;
   }

@@ -82,9 +82,9 @@ namespace slipstick::tfeti
     /// Loads along the motions of all bodies [N]; 0 where the loads cancel to rounding. Collective.
     Eigen::VectorXd loads() const;
 
-    /// e = R'f, the loads along the rigid motions of this rank's subdomains in turn [N]; those of a body sum to 0 where
-    /// they cancel to rounding. Otherwise a body that nothing holds would have to be kept in equilibrium with that
-    /// rounding. Collective.
+    /// e = R'f, the loads along the rigid motions of this rank's subdomains in turn [N]. Of a body whose loads balance
+    /// each other, they sum to 0 without rounding, with which nothing that does not hold the body could be in
+    /// equilibrium. Collective.
     Eigen::VectorXd loads_of_subdomains() const;
 
     /// Jumps B u of all rows that this rank owns (0 for gluing) under motions; rows x motions.
