@@ -264,14 +264,16 @@ namespace slipstick::scene
         }
     }
 
-    /// Refuses limits of a refinement that does not take place. Max unknowns is allowed: it guards scenes of any kind.
-    void check_limits(const AdaptivityOptions &adaptivity, const Parameters &parameters)
+    /// Warns of a limit of a refinement that does not take place. Max unknowns guards scenes of any kind.
+    template <int dim>
+    void check_limits(const AdaptivityOptions &adaptivity, const Parameters &parameters, Scene<dim> &scene)
     {
       if (const std::string path = "Adaptivity/Max meshes";
           parameters.is_set(path) && !adaptivity.refines() && adaptivity.max_meshes != AdaptivityOptions().max_meshes)
-        throw parameters.error(path,
-                               "has no effect: no accuracy is requested, and the mesh is not refined",
-                               "set Accuracy = 1 %, or Mesh = adaptive, or leave it out");
+        scene.warnings.push_back(
+          parameters.locate(path) + " = '" + std::to_string(adaptivity.max_meshes) +
+          "' has no effect: no accuracy is requested, and the mesh is not refined; set Accuracy = 1 %, "
+          "or Mesh = adaptive, or leave it out");
     }
 
     /// Checks that the goals are quantities of the scene.
@@ -338,7 +340,7 @@ namespace slipstick::scene
     scene.name       = std::filesystem::path(file).stem().string();
     check_scene(scene, parameters);
     resolve_mesh(declared.adaptivity, scene);
-    check_limits(declared.adaptivity, parameters);
+    check_limits(declared.adaptivity, parameters, scene);
     check_goals(declared.adaptivity, scene, parameters);
     if (adaptivity)
       *adaptivity = declared.adaptivity;

@@ -114,14 +114,11 @@ namespace slipstick::qp::detail
         options.face,
         set.turns(),
         regularization(merit));
-      const double first = solver.start(std::move(next.x), std::move(next.Fx), now.error_of_Fx, center);
-      const double target =
-        std::min(std::max(options.last_forcing * tolerance * goal.reference,
-                          (is_singular ? options.singular_forcing : options.forcing) * std::min(first, merit)),
-                 std::max(rounding_of_residual * now.error_of_Fx,
-                          options.sharpening * solved.least_of_earlier(set.sides(), problem.reduction())));
-      auto result = has_ties() ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
-      if (is_singular || has_wide_stiffnesses)
+      const double first  = solver.start(std::move(next.x), std::move(next.Fx), now.error_of_Fx, center);
+      const double target = target_of(std::min(first, merit), tolerance, now.error_of_Fx);
+      auto         result =
+        has_ties() || has_wide_stiffnesses ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
+      if (is_singular)
         solved.add(set.sides(), result.residual);
       counts += result.counts;
       next.x           = std::move(result.x);
@@ -132,6 +129,16 @@ namespace slipstick::qp::detail
     }
 
   private:
+    // Residual to which a face is solved. @param residual at its start. @param tolerance, rounding as in solve().
+    double target_of(const double residual, const double tolerance, const double rounding) const
+    {
+      const double rounded = rounding_of_residual * rounding;
+      const double least   = has_wide_stiffnesses ? rounded : options.last_forcing * tolerance * goal.reference;
+      const double part    = is_singular ? options.singular_forcing : options.forcing;
+      const double earlier = solved.least_of_earlier(set.sides(), problem.reduction());
+      return std::min(std::max(least, part * residual), std::max(rounded, options.sharpening * earlier));
+    }
+
     // The largest weight of a residual over the smallest, which is 1.
     static double ratio_of_weights(const Problem &problem, const Vector &d)
     {
@@ -228,7 +235,7 @@ namespace slipstick::qp::detail
     const NewtonOptions        &options;
     ActiveSet<Vector, Problem> &set;
     Counts                     &counts;
-    const bool                  has_wide_stiffnesses; // sets may depend on gradients below the tolerance
+    const bool                  has_wide_stiffnesses; // sets depend on gradients below the tolerance
     const bool                  is_singular;          // whether F is singular on some faces
 
     const std::shared_ptr<DirectionStore<Vector>> directions;

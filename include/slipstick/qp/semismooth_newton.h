@@ -269,9 +269,7 @@ namespace slipstick::qp
           return false;
         set.put_on_bounds(now.x);
         face->balance(now.x);
-        problem.multiply(now.x, now.Fx);
-        ++counts.hessian_multiplications;
-        faces.fill_gradient(*face, now);
+        faces.multiply(*face, now);
         path.begin();
         return true;
       }

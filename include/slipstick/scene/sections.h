@@ -263,7 +263,6 @@ namespace slipstick::scene
     void read(const Parameters &parameters, const std::string &section, ContactPair<dim> &pair) const;
 
     /// Warnings about parameters that are set but belong to other laws. None where --set changes the law of a file.
-    /// @throws InputError if --set sets such a parameter, and not the law.
     std::vector<std::string> without_effect(const Parameters &parameters, const std::string &section) const;
   };
 
