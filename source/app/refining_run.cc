@@ -15,7 +15,7 @@ namespace slipstick::app
   {
     // A finer mesh may resolve a quantity without an estimate (a pressure at a single node).
     constexpr unsigned int most_without_estimate = 3; // consecutive meshes
-    // ... that resolve the contact and are of at least this size: what coarser ones do not resolve looks like a peak, ...
+    // ... that resolve the contact and have this size: what coarser ones do not resolve looks like a peak, ...
     template <int dim>
     constexpr unsigned int least_unknowns_without_estimate = dim == 2 ? 3000 : 10000;
     // ... unless its value grows by less than this factor from mesh to mesh: a pressure at a corner grows without limit.
