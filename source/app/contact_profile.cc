@@ -316,13 +316,14 @@ namespace slipstick::app
   }
 
   template <int dim>
-  std::string unresolved_contacts(const std::vector<ContactNode>             &nodes,
-                                  const std::vector<scene::ContactPair<dim>> &pairs,
-                                  const double                                largest_force,
-                                  const bool                                  is_of_revolution,
-                                  const MPI_Comm                              comm)
+  UnresolvedContacts unresolved_contacts(const std::vector<ContactNode>             &nodes,
+                                         const std::vector<scene::ContactPair<dim>> &pairs,
+                                         const double                                largest_force,
+                                         const bool                                  is_of_revolution,
+                                         const MPI_Comm                              comm)
   {
-    std::string names, first;
+    UnresolvedContacts found;
+    std::string        names, first;
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
         if (pairs[k].law.is_bonded)
@@ -337,6 +338,7 @@ namespace slipstick::app
         if (zones.empty() || !(force > negligible_force * largest_force) || unresolved <= most_unresolved * force)
           continue;
         names += (names.empty() ? "" : ", ") + pairs[k].name;
+        found.pairs.push_back(k);
         if (first.empty())
           first = format("%s: %u node%s at %s, where nodes are %.4g mm apart",
                          pairs[k].name.c_str(),
@@ -345,7 +347,7 @@ namespace slipstick::app
                          point_text(zones[0].position, dim).c_str(),
                          zones[0].distance);
       }
-    const std::string text =
+    found.warning =
       names.empty()
         ? ""
         : format("Contact %s: most of the normal force acts on nodes next to open ones (%s), so that the mesh does "
@@ -353,19 +355,21 @@ namespace slipstick::app
                  "not determine; refine the mesh there (Refine towards) or set Mesh = adaptive",
                  names.c_str(),
                  first.c_str());
-    return dealii::Utilities::MPI::broadcast(comm, text);
+    found.pairs   = dealii::Utilities::MPI::broadcast(comm, found.pairs);
+    found.warning = dealii::Utilities::MPI::broadcast(comm, found.warning);
+    return found;
   }
 
-  template std::string unresolved_contacts(const std::vector<ContactNode> &,
-                                           const std::vector<scene::ContactPair<2>> &,
-                                           const double,
-                                           const bool,
-                                           const MPI_Comm);
-  template std::string unresolved_contacts(const std::vector<ContactNode> &,
-                                           const std::vector<scene::ContactPair<3>> &,
-                                           const double,
-                                           const bool,
-                                           const MPI_Comm);
+  template UnresolvedContacts unresolved_contacts(const std::vector<ContactNode> &,
+                                                  const std::vector<scene::ContactPair<2>> &,
+                                                  const double,
+                                                  const bool,
+                                                  const MPI_Comm);
+  template UnresolvedContacts unresolved_contacts(const std::vector<ContactNode> &,
+                                                  const std::vector<scene::ContactPair<3>> &,
+                                                  const double,
+                                                  const bool,
+                                                  const MPI_Comm);
 
   template <int dim>
   std::vector<mechanics::Surroundings<dim>> pressure_peaks(const std::vector<ContactNode>             &nodes,

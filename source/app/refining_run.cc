@@ -15,7 +15,7 @@ namespace slipstick::app
   {
     // A finer mesh may resolve a quantity without an estimate (a pressure at a single node).
     constexpr unsigned int most_without_estimate = 3; // consecutive meshes
-    // ... of at least this size: a contact that coarser ones do not resolve looks like a peak, ...
+    // ... that resolve the contact and have this size: what coarser ones do not resolve looks like a peak, ...
     template <int dim>
     constexpr unsigned int least_unknowns_without_estimate = dim == 2 ? 3000 : 10000;
     // ... unless its value grows by less than this factor from mesh to mesh: a pressure at a corner grows without limit.
@@ -287,8 +287,11 @@ namespace slipstick::app
       return so_far;
     const bool is_resolvable =
       std::any_of(goals.begin(), goals.end(), [](const GoalError &goal) { return goal.is_resolvable; });
-    const bool is_coarse         = rows.back().unknowns < least_unknowns_without_estimate<dim>;
-    n_without                    = is_known || is_resolvable || may_settle || is_coarse ? 0 : n_without + 1;
+    const bool is_unresolved = std::any_of(goals.begin(), goals.end(), [&steps](const GoalError &goal) {
+      return steps.is_unresolved(goal.quantity);
+    });
+    const bool is_coarse     = rows.back().unknowns < least_unknowns_without_estimate<dim>;
+    n_without = is_known || is_resolvable || may_settle || is_unresolved || is_coarse ? 0 : n_without + 1;
     const std::string for_stress = remedy_for_stress(steps, summary);
     if (n_without == most_without_estimate)
       return so_far + (for_stress.empty() ? "" : "; " + for_stress);
@@ -360,6 +363,8 @@ namespace slipstick::app
         cells = errors_of(steps);
         n_marked += mark(steps.mesh(), cells, refinement);
       }
+    if (!is_known) // errors may be larger elsewhere
+      n_marked += steps.mark_unresolved_contacts(refinement);
     n_marked += steps.mark_coarse_masters(options.goals, refinement);
     const double growth = 1 + cells_for_one * n_marked / summary.problem.cells;
     if (n_marked == 0)

@@ -184,6 +184,23 @@ namespace slipstick::app
   }
 
   template <int dim>
+  bool Run<dim>::is_unresolved(const std::string &goal) const
+  {
+    return std::any_of(unresolved_pairs.begin(), unresolved_pairs.end(), [&](const unsigned int k) {
+      const std::string beginning = scene.contacts[k].name + ".";
+      return goal.compare(0, beginning.size(), beginning) == 0;
+    });
+  }
+
+  template <int dim>
+  std::size_t Run<dim>::mark_unresolved_contacts(mesh::Refinement &refinement) const
+  {
+    return unresolved_pairs.empty()
+             ? 0
+             : mark_contact_zones(scene, solver.mesh(), contact_steps.back().nodes, unresolved_pairs, refinement);
+  }
+
+  template <int dim>
   contact::ContactOfMesh Run<dim>::contact_of_first_step() const
   {
     if (contact_steps.empty())
@@ -330,13 +347,16 @@ namespace slipstick::app
       }
     largest_force = std::max(largest_force, app::largest_force(summary.results));
     if (scene.has_contact() && step + 1 == scene.load_factors.size())
-      if (const auto text = unresolved_contacts(contact_steps.back().nodes,
-                                                scene.contacts,
-                                                largest_force,
-                                                scene.plane_state == scene::PlaneState::axisymmetric,
-                                                comm);
-          !text.empty())
-        warn({{"resolution", text}});
+      {
+        const auto found = unresolved_contacts(contact_steps.back().nodes,
+                                               scene.contacts,
+                                               largest_force,
+                                               scene.plane_state == scene::PlaneState::axisymmetric,
+                                               comm);
+        unresolved_pairs = found.pairs;
+        if (!found.warning.empty())
+          warn({{"resolution", found.warning}});
+      }
     drop_moments(scene, summary.results);
     clock.leave();
     add_step(so_far, t, summary);

@@ -84,6 +84,48 @@ namespace slipstick::app
       return all;
     }
 
+    /// Finds the faces at contact nodes.
+    template <int dim>
+    class FacesAtNodes
+    {
+    public:
+      /// Keeps a reference to @p faces_.
+      explicit FacesAtNodes(const std::vector<OutlineFace<dim>> &faces_)
+        : faces(faces_)
+        , tree(centers(faces))
+      {
+        for (const auto &face : faces)
+          reach = std::max(reach, nearby * face.size);
+      }
+
+      /// Calls f(face) for those of the two bodies of the pair.
+      template <class F>
+      void for_each(const contact::ContactNode &node, const scene::ContactPair<dim> &pair, const F &f) const
+      {
+        dealii::Point<dim> x;
+        for (unsigned int d = 0; d < dim; ++d)
+          x[d] = node.position[d];
+        const auto around = BoxTree<dim>::widened(BoxTree<dim>::box_around({x}), reach + std::abs(node.initial_gap));
+        for (const unsigned int k : tree.near(around))
+          if (const auto &face = faces[k];
+              (face.body == pair.slave.body || (pair.master && face.body == pair.master->body)) && face.is_at(node))
+            f(face);
+      }
+
+    private:
+      static std::vector<typename BoxTree<dim>::Box> centers(const std::vector<OutlineFace<dim>> &faces)
+      {
+        std::vector<typename BoxTree<dim>::Box> boxes;
+        for (const auto &face : faces)
+          boxes.push_back(BoxTree<dim>::box_around({face.place()}));
+        return boxes;
+      }
+
+      const std::vector<OutlineFace<dim>> &faces;
+      const BoxTree<dim>                   tree;
+      double                               reach = 0; // within which faces are at a node without gap
+    };
+
     bool is_goal(const std::string &pair, const std::vector<std::string> &goals)
     {
       return std::any_of(goals.begin(), goals.end(), [&pair](const std::string &goal) {
@@ -113,35 +155,20 @@ namespace slipstick::app
           const auto &[body, path] = refinement.cells.at(face.cell);
           return face.size / (refinement.refined[body].count(path) ? face.division : 1.);
         };
-        std::vector<typename BoxTree<dim>::Box> centers;
-        double                                  reach = 0; // within which faces are at a node without gap
-        for (const auto &face : faces)
-          {
-            centers.push_back(BoxTree<dim>::box_around({face.place()}));
-            reach = std::max(reach, nearby * face.size);
-          }
-        const BoxTree<dim> tree(centers);
+        const FacesAtNodes<dim> at_nodes(faces);
         for (const auto &node : nodes)
           {
             if (!node.is_closed || !pairs[node.pair])
               continue;
-            dealii::Point<dim> x;
-            for (unsigned int d = 0; d < dim; ++d)
-              x[d] = node.position[d];
-            const auto around =
-              BoxTree<dim>::widened(BoxTree<dim>::box_around({x}), reach + std::abs(node.initial_gap));
             const auto                           &pair  = scene.contacts[node.pair];
             double                                slave = std::numeric_limits<double>::infinity();
             std::vector<const OutlineFace<dim> *> masters;
-            for (const unsigned int f : tree.near(around))
-              if (const auto &face = faces[f];
-                  (face.body == pair.slave.body || face.body == pair.master->body) && face.is_at(node))
-                {
-                  if (face.body == pair.slave.body)
-                    slave = std::min(slave, size(face));
-                  if (face.body == pair.master->body)
-                    masters.push_back(&face);
-                }
+            at_nodes.for_each(node, pair, [&](const OutlineFace<dim> &face) {
+              if (face.body == pair.slave.body)
+                slave = std::min(slave, size(face));
+              if (face.body == pair.master->body)
+                masters.push_back(&face);
+            });
             for (const auto *face : masters)
               if (size(*face) > largest_ratio * slave)
                 {
@@ -153,6 +180,45 @@ namespace slipstick::app
     return dealii::Utilities::MPI::broadcast(mesh.comm, n_marked);
   }
 
+  template <int dim>
+  std::size_t mark_contact_zones(const scene::Scene<dim>                 &scene,
+                                 const mesh::Mesh<dim>                   &mesh,
+                                 const std::vector<contact::ContactNode> &nodes,
+                                 const std::vector<unsigned int>         &pairs,
+                                 mesh::Refinement                        &refinement)
+  {
+    std::vector<bool> bodies(scene.bodies.size(), false);
+    for (const unsigned int k : pairs)
+      {
+        bodies[scene.contacts[k].slave.body] = true;
+        if (scene.contacts[k].master)
+          bodies[scene.contacts[k].master->body] = true;
+      }
+    const auto  faces    = outline_faces(mesh, bodies);
+    std::size_t n_marked = 0;
+    if (dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0)
+      {
+        const FacesAtNodes<dim> at_nodes(faces);
+        for (const auto &node : nodes)
+          if (node.is_closed && std::find(pairs.begin(), pairs.end(), node.pair) != pairs.end())
+            at_nodes.for_each(node, scene.contacts[node.pair], [&](const OutlineFace<dim> &face) {
+              const auto &[body, path] = refinement.cells.at(face.cell);
+              n_marked += refinement.refined[body].insert(path).second;
+            });
+      }
+    return dealii::Utilities::MPI::broadcast(mesh.comm, n_marked);
+  }
+
+  template std::size_t mark_contact_zones(const scene::Scene<2> &,
+                                          const mesh::Mesh<2> &,
+                                          const std::vector<contact::ContactNode> &,
+                                          const std::vector<unsigned int> &,
+                                          mesh::Refinement &);
+  template std::size_t mark_contact_zones(const scene::Scene<3> &,
+                                          const mesh::Mesh<3> &,
+                                          const std::vector<contact::ContactNode> &,
+                                          const std::vector<unsigned int> &,
+                                          mesh::Refinement &);
   template std::size_t mark_coarse_masters(const scene::Scene<2> &,
                                            const mesh::Mesh<2> &,
                                            const std::vector<contact::ContactNode> &,

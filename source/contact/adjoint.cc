@@ -17,6 +17,8 @@ namespace slipstick::contact
     constexpr double tolerance = 1e-2;
     // Residuals below this fraction of the numbers that are summed are rounding: the loads alone determine the forces.
     constexpr double rounding = 1e-12;
+    // ... and so are residuals below this fraction that no step reduces.
+    constexpr double rounding_that_stays = 1e-11;
     // The ties are satisfied to this fraction of what the solution without ties misses.
     constexpr double tolerance_of_ties = 0.03;
     // Steps of GMRES on the ties. Usually two to five suffice.
@@ -149,7 +151,7 @@ namespace slipstick::contact
     const double                        summed   = of_jumps.l2_norm() + d.l2_norm() + product.l2_norm();
     const double                        residual = solver.start(std::move(x), std::move(product));
     auto result = solver.solve_symmetric(std::max(tolerance * residual, rounding * summed));
-    if (result.status != qp::Status::converged)
+    if (result.status != qp::Status::converged && !(result.residual <= rounding_that_stays * summed))
       return {};
     work += result.counts;
     ++work.hessian_multiplications;

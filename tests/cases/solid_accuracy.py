@@ -117,6 +117,21 @@ class SolidAccuracy(Solids):
         self.assertIsNone(bar.get('error'))
         self.assertIn('peak', bar['reason'])
 
+    def test_forces_that_the_loads_determine(self):
+        """The adjoint solutions are rigid motions; residuals of 1e-12 to 4e-12 are rounding, and were not solved."""
+        ball = solid('ball', materials={'elastic': {'Young modulus': '1e4', 'Poisson ratio': '0.3'}},
+                     bodies={'ball': {'Shape': 'half ball', 'Center': '0, 20, 0', 'Radius': '20', 'Cells around': '24', 'Material': 'elastic'}},
+                     obstacles={'plane': {'Shape': 'half space', 'Point': '0, 0, 0', 'Normal': '0, 1, 0'}},
+                     supports={'middle': {'Body': 'ball', 'Point': '0, 20, 0', 'Displacement x': '0', 'Displacement z': '0'},
+                               'side': {'Body': 'ball', 'Point': '20, 20, 0', 'Displacement z': '0'}},
+                     tractions={'pressed': {'Boundary': 'ball/flat', 'Pressure': '8'}},
+                     contacts={'touch': {'Slave': 'ball/surface', 'Master': 'plane', 'Law': 'frictionless'}},
+                     Discretization={'Degree': '2'}, Decomposition={'Method': 'auto'}, Solver={'Tolerance': '1e-6'})
+        found = bars(converged(ball, {'Error bars': 'true', 'Output/VTU': 'false'}).summary)
+        for figure in ('touch.normal_force', 'middle.force_x', 'middle.force_z', 'side.force_z'):
+            self.assertIsNotNone(found[figure].get('error'), figure)
+            self.assertLess(found[figure]['error'], 1e-9 * found['touch.normal_force']['value'], figure)
+
     def test_points_are_left_out_and_said(self):
         scene = solid('tip', supports={'wall': {'Boundary': 'box/bottom', **{'Displacement ' + d: '0' for d in 'xyz'}}},
                       point_loads={'tip': {'Body': 'box', 'Point': '2, 3, 4', 'Force y': '-1'}})

@@ -467,6 +467,20 @@ class Accuracy(unittest.TestCase):
         for alone, beside in zip(*errors):
             self.assertAlmostEqual(alone, beside, delta=1e-3 * alone)
 
+    def test_a_contact_smaller_than_a_cell(self):
+        """Of a half disc on a plane, whose first mesh has more than 3000 unknowns: it ended after three meshes."""
+        disc = scenes.box(name='disc', plane_state='plane strain', materials={'elastic': {'Young modulus': '1e4', 'Poisson ratio': '0.3'}},
+                          bodies={'disc': {'Shape': 'half disc', 'Center': '0, 20', 'Radius': '20', 'Cells along arc': '80', 'Material': 'elastic'}},
+                          obstacles={'plane': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'}},
+                          supports={'middle': {'Body': 'disc', 'Point': '0, 20', 'Displacement x': '0'}},
+                          tractions={'pressed': {'Boundary': 'disc/flat', 'Pressure': '0.005'}},
+                          contacts={'touch': {'Slave': 'disc/arc', 'Master': 'plane', 'Law': 'frictionless'}}, Decomposition={'Method': 'auto'})
+        hertz = math.sqrt(0.2 * 1e4 / (1 - 0.3 ** 2) / (math.pi * 20))
+        for ranks in (1, 2):
+            summary = converged(disc, {'Accuracy': '10 %', 'Goal': 'touch.max_pressure, touch.normal_force', **QUIET}, ranks=ranks).summary
+            self.assertGreater(summary['meshes'][0]['unknowns'], 3000)
+            self.assertAlmostEqual(summary['results']['contact'][0]['max_pressure'], hertz, delta=0.1 * hertz)
+
     def test_a_stress_without_limit_has_no_accuracy(self):
         """More meshes, or a finer first one, were the remedy: 9450 MPa after twelve."""
         result = solve(layers(), {'Accuracy': '5 %', 'Goal': 'max_von_mises', 'Adaptivity/Max meshes': 5, **QUIET})

@@ -158,16 +158,22 @@ namespace slipstick::app
   template <int dim>
   using ContactProfile = std::conditional_t<dim == 2, ContactLine, ContactSurface>;
 
-  /// A warning about pairs whose contact the mesh does not resolve: most of the normal force acts on nodes next to open
-  /// ones. Empty: none. Only the nodes of rank 0 are used; the result is the same on all ranks.
+  struct UnresolvedContacts
+  {
+    std::vector<unsigned int> pairs;
+    std::string               warning; // empty: none
+  };
+
+  /// Pairs whose contact the mesh does not resolve: most of the normal force acts on nodes next to open ones. Only the
+  /// nodes of rank 0 are used; the result is the same on all ranks.
   /// @param largest_force of loads, supports and pairs, in all load steps so far [N]; on rank 0.
   /// @param is_of_revolution whether the scene is axisymmetric. Collective.
   template <int dim>
-  std::string unresolved_contacts(const std::vector<contact::ContactNode>    &nodes,
-                                  const std::vector<scene::ContactPair<dim>> &pairs,
-                                  const double                                largest_force,
-                                  const bool                                  is_of_revolution,
-                                  const MPI_Comm                              comm);
+  UnresolvedContacts unresolved_contacts(const std::vector<contact::ContactNode>    &nodes,
+                                         const std::vector<scene::ContactPair<dim>> &pairs,
+                                         const double                                largest_force,
+                                         const bool                                  is_of_revolution,
+                                         const MPI_Comm                              comm);
 
   /// Pressure peaks of every pair that its nodes do not resolve, on both bodies, with a radius of a tenth of the size
   /// of the contact: stresses there grow with every refinement, or require a finer mesh. Only the nodes of rank 0 are

@@ -50,7 +50,7 @@ namespace slipstick::app
     /// been reached; empty: there is one, or none is needed.
     std::string why_to_stop(const Run<dim> &steps, const output::Summary &summary);
 
-    /// What to ask for in place of a largest stress that is infinite, as far as the meshes show. Empty: none is. Collective.
+    /// What to ask for in place of a largest stress that meshes show to be infinite; empty: none is. Collective.
     std::string remedy_for_stress(const Run<dim> &steps, const output::Summary &summary) const;
 
     /// Marks the cells to be refined for the next mesh. @return why there is no next mesh; empty: there is one.

@@ -81,6 +81,12 @@ namespace slipstick::app
     }
     std::vector<LeftOut<dim>> point_forces() const;
 
+    /// Whether this is a figure of a pair whose contact the mesh does not resolve in the last load step.
+    bool is_unresolved(const std::string &goal) const;
+
+    /// Marks the cells at these contacts. Collective. @return number of cells added.
+    std::size_t mark_unresolved_contacts(mesh::Refinement &refinement) const;
+
     /// See side_balance.h; with the contact nodes of the last load step. Collective.
     std::size_t mark_coarse_masters(const std::vector<std::string> &goals, mesh::Refinement &refinement) const;
 
@@ -132,6 +138,7 @@ namespace slipstick::app
     std::unique_ptr<StepSolution>    last;   // of the last load step
     std::vector<GoalError>           errors; // of its quantities
     std::vector<output::ContactStep> contact_steps;
+    std::vector<unsigned int>        unresolved_pairs; // in the last load step
     TotalSlip                        total_slip;
     double                           largest_force = 0; // of the load steps so far, on rank 0 [N]
     std::vector<std::string>         warnings;

@@ -1,4 +1,4 @@
-// Meshes of the two sides of a contact pair whose pressures are goals.
+// Cells at contact pairs that are refined: masters with their slaves, and contacts that are not resolved.
 #pragma once
 
 #include <slipstick/contact/result.h>
@@ -22,4 +22,13 @@ namespace slipstick::app
                                   const std::vector<contact::ContactNode> &nodes,
                                   const std::vector<std::string>          &goals,
                                   mesh::Refinement                        &refinement);
+
+  /// Adds the cells of both sides to @p refinement that have a face at a closed node of these pairs. Collective.
+  /// @param nodes of all ranks, on rank 0. @return number of cells added.
+  template <int dim>
+  std::size_t mark_contact_zones(const scene::Scene<dim>                 &scene,
+                                 const mesh::Mesh<dim>                   &mesh,
+                                 const std::vector<contact::ContactNode> &nodes,
+                                 const std::vector<unsigned int>         &pairs,
+                                 mesh::Refinement                        &refinement);
 } // namespace slipstick::app
