@@ -249,7 +249,7 @@ namespace slipstick::contact
           }
         find_place_of_row(dual, row_of_jump, largest[jump]);
         auto energies              = tfeti::jump_energies(dual, wrong, held);
-        result.checks.error_energy = energies.of_body.sum();
+        result.checks.error_energy = energies.of_body.cwiseMax(0.).sum(); // rounding may be negative
         add_errors_of_bounds(energies.forces);
         const TractionErrors tractions(dual, multipliers, energies.forces);
         result.checks.largest_traction = tractions.largest_norm();

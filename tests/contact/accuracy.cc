@@ -38,7 +38,7 @@ namespace
     Scene scene = cut({}, metis(6));
     add_body(scene, "stiff", {0, 0}, {10, 4}, {{10, 4}});
     add_body(scene, "soft", {2, 4}, {6, 3}, {{7, 3}});
-    scene.materials[0].young_modulus = 1e8;
+    scene.materials[0].young_modulus = 1e9;
     scene.materials[1].young_modulus = 1e3;
     support(scene, 0, "bottom", "0", "0");
     support(scene, 1, "top", "0", "-0.1 - 0.02*x");

@@ -3,7 +3,7 @@
 import pathlib
 import unittest
 
-from sweep import QUIET, Extremes, Table, figures, shipped, solve, stack
+from sweep import QUIET, Extremes, Table, figures, scenes, shipped, solve, stack
 
 BLOCKS = {'Decomposition/Cells per block': 10}
 
@@ -69,6 +69,21 @@ class Accuracy(Extremes):
         reachable = result.stderr.split('set Solver/Tolerance to ')[1].split()[0]
         self.converges(table, reachable + ' as it says', shipped('box_linear'),
                        {**BLOCKS, 'Solver/Tolerance': float(reachable)})
+
+    def test_errors_that_are_rounding(self):
+        """One node of a half disc touches, and the solution is exact: squared errors were negative, their root no number."""
+        table = Table('one node in contact')
+        for cells in (96, 160):
+            body = {'Shape': 'half disc', 'Center': '0, 20', 'Radius': '20', 'Cells along arc': cells, 'Material': 'soft'}
+            disc = scenes.box(plane_state='plane strain', bodies={'disc': body},
+                              materials={'soft': {'Young modulus': '1e4', 'Poisson ratio': '0.3'}},
+                              obstacles={'plane': {'Shape': 'half plane', 'Point': '0, 0', 'Normal': '0, 1'}},
+                              supports={'middle': {'Body': 'disc', 'Point': '0, 20', 'Displacement x': '0'}},
+                              tractions={'load': {'Boundary': 'disc/flat', 'Pressure': '0.01'}},
+                              contacts={'touch': {'Slave': 'disc/arc', 'Master': 'plane', 'Law': 'frictionless'}},
+                              Decomposition={'Method': 'auto'}, Solver={'Tolerance': '1e-4'})
+            result = self.converges(table, cells, disc)
+            self.assertLess(result.summary['error']['algebraic_relative'], 1e-6)
 
     def test_same_input_and_ranks_give_the_same_bits(self):
         table = Table('twice the same')

@@ -246,6 +246,15 @@ namespace slipstick::qp
         return result;
       }
 
+      /// Whether there are sets with ties. Collective.
+      bool may_have_ties() const
+      {
+        const bool may = std::any_of(set.pressure_bounds.begin(),
+                                     set.pressure_bounds.end(),
+                                     [](const PressureBound &bound) { return bound.normal != no_entry; });
+        return problem.reduction().min(may ? -1. : 0.) < 0;
+      }
+
       bool has_ties() const
       {
         return problem.reduction().min(ties().empty() ? 1. : 0.) < 1;

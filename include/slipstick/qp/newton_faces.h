@@ -51,6 +51,7 @@ namespace slipstick::qp::detail
       , set(set_)
       , counts(counts_)
       , has_wide_stiffnesses(ratio_of_weights(problem_, d_) > options_.wide_stiffnesses)
+      , minimises_residuals(has_wide_stiffnesses && set_.may_have_ties())
       , is_singular(dependent_compliances(problem_, 0) != nullptr)
       , directions(directions_ ? std::move(directions_)
                                : std::make_shared<DirectionStore<Vector>>(options_.n_directions))
@@ -117,8 +118,8 @@ namespace slipstick::qp::detail
       const double first  = solver.start(std::move(next.x), std::move(next.Fx), now.error_of_Fx, center);
       const double target = target_of(std::min(first, merit), tolerance, now.error_of_Fx);
       auto         result =
-        has_ties() || has_wide_stiffnesses ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
-      if (is_singular)
+        has_ties() || minimises_residuals ? solver.solve_unsymmetric(target) : solver.solve_symmetric(target);
+      if (is_singular || (has_wide_stiffnesses && !minimises_residuals))
         solved.add(set.sides(), result.residual);
       counts += result.counts;
       next.x           = std::move(result.x);
@@ -133,7 +134,7 @@ namespace slipstick::qp::detail
     double target_of(const double residual, const double tolerance, const double rounding) const
     {
       const double rounded = rounding_of_residual * rounding;
-      const double least   = has_wide_stiffnesses ? rounded : options.last_forcing * tolerance * goal.reference;
+      const double least   = minimises_residuals ? rounded : options.last_forcing * tolerance * goal.reference;
       const double part    = is_singular ? options.singular_forcing : options.forcing;
       const double earlier = solved.least_of_earlier(set.sides(), problem.reduction());
       return std::min(std::max(least, part * residual), std::max(rounded, options.sharpening * earlier));
@@ -236,6 +237,7 @@ namespace slipstick::qp::detail
     ActiveSet<Vector, Problem> &set;
     Counts                     &counts;
     const bool                  has_wide_stiffnesses; // sets depend on gradients below the tolerance
+    const bool                  minimises_residuals;  // on all faces, as far as rounding permits
     const bool                  is_singular;          // whether F is singular on some faces
 
     const std::shared_ptr<DirectionStore<Vector>> directions;
