@@ -1,3 +1,4 @@
+#include <slipstick/app/contact_cells.h>
 #include <slipstick/app/contact_profile.h>
 #include <slipstick/app/error_bars.h>
 #include <slipstick/app/formula_warnings.h>
@@ -7,7 +8,6 @@
 #include <slipstick/app/names.h>
 #include <slipstick/app/report.h>
 #include <slipstick/app/run.h>
-#include <slipstick/app/side_balance.h>
 #include <slipstick/app/solution_warnings.h>
 #include <slipstick/base/memory.h>
 #include <slipstick/contact/equilibrium_limit.h>

@@ -249,7 +249,7 @@ namespace slipstick::contact
           }
         find_place_of_row(dual, row_of_jump, largest[jump]);
         auto energies              = tfeti::jump_energies(dual, wrong, held);
-        result.checks.error_energy = energies.of_body.cwiseMax(0.).sum(); // rounding may be negative
+        result.checks.error_energy = energies.of_body.sum();
         add_errors_of_bounds(energies.forces);
         const TractionErrors tractions(dual, multipliers, energies.forces);
         result.checks.largest_traction = tractions.largest_norm();
@@ -406,7 +406,7 @@ namespace slipstick::contact
         for (unsigned int b = 0; b < n_bodies; ++b)
           {
             const double share = least_load > 0 ? std::min(1., on_bodies.scale[b] / least_load) : 1.;
-            const double error = std::max(error_energies.of_body[b], 0.);
+            const double error = error_energies.of_body[b];
             const double least =
               std::max(scales.no_energy,
                        history.energies.empty() ? 0. : part_of_history * part_of_history * history.energies[b]);

@@ -39,6 +39,7 @@ namespace slipstick::tfeti
           result.spots[body] = {energies[p][k], p, static_cast<unsigned int>(k)};
       }
     MPI_Allreduce(MPI_IN_PLACE, result.of_body.data(), result.of_body.size(), MPI_DOUBLE, MPI_SUM, comm);
+    result.of_body = result.of_body.cwiseMax(0.); // rounding may be negative
     return result;
   }
 

@@ -29,7 +29,7 @@ class Materials(Extremes):
     def test_stiffness_ratio_for_other_subdomains(self):
         """Faces were solved to more than the residual that tells slip from stick, or not at all (decision 0166)."""
         table = Table('the same for small ratios, seeds of METIS')
-        for power, seeds in ((-7, (1, 7)), (-8, range(12)), (-9, range(12)), (-10, (1, 7))):
+        for power, seeds in ((-7, (1, 7)), (-8, range(12)), (-9, range(12))):
             case = stack(box={'Young modulus': repr(E * 10.**power)})
             counts = [count(self.converges(table, '1e{} {}'.format(power, seed), case, {'Decomposition/Seed': seed}, most=100))
                       for seed in seeds]

@@ -87,7 +87,7 @@ namespace slipstick::app
     /// Marks the cells at these contacts. Collective. @return number of cells added.
     std::size_t mark_unresolved_contacts(mesh::Refinement &refinement) const;
 
-    /// See side_balance.h; with the contact nodes of the last load step. Collective.
+    /// See contact_cells.h; with the contact nodes of the last load step. Collective.
     std::size_t mark_coarse_masters(const std::vector<std::string> &goals, mesh::Refinement &refinement) const;
 
   private:

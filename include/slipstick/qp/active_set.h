@@ -255,11 +255,6 @@ namespace slipstick::qp
         return problem.reduction().min(may ? -1. : 0.) < 0;
       }
 
-      bool has_ties() const
-      {
-        return problem.reduction().min(ties().empty() ? 1. : 0.) < 1;
-      }
-
       /// The values that must vanish for a step p on the present face: entries at bounds and violations of ties.
       std::vector<double> conditions(const Vector &p, const std::vector<Tie> &ties) const
       {

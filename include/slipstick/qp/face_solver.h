@@ -5,7 +5,8 @@
 // If F is singular, the solution is then unique: the one nearest to that force (proximal point).
 //
 // Faces without ties are solved by conjugate gradients (Farhat, Crivelli, Roux 1994, with full orthogonalisation). Ties
-// make the operator unsymmetric; then generalised conjugate residuals are used (Eisenstat, Elman, Schultz 1983).
+// make the operator unsymmetric; then generalised conjugate residuals are used (Eisenstat, Elman, Schultz 1983), which
+// also endure stiffnesses that differ by many orders of magnitude.
 #pragma once
 
 #include <slipstick/qp/face_conjugate_gradients.h>

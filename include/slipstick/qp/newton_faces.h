@@ -237,7 +237,7 @@ namespace slipstick::qp::detail
     ActiveSet<Vector, Problem> &set;
     Counts                     &counts;
     const bool                  has_wide_stiffnesses; // sets depend on gradients below the tolerance
-    const bool                  minimises_residuals;  // on all faces, as far as rounding permits
+    const bool                  minimises_residuals;  // on all faces down to rounding: stiffnesses differ, ties
     const bool                  is_singular;          // whether F is singular on some faces
 
     const std::shared_ptr<DirectionStore<Vector>> directions;

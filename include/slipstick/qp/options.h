@@ -97,15 +97,15 @@ namespace slipstick::qp
     double       least_part  = 1e-5; // ... down to this part of the goal
     double divergence_factor = 1e3; // or if natural residuals grow by this factor after faces that meet the goal, twice
     double sharpening = 0.01; // target over the residual of an earlier face with the same set but others in between ...
-    unsigned int n_remembered_sets = 10;  // ... among this number of the latest faces, if F may be singular, ...
-    double       wide_stiffnesses  = 1e6; // ... or if stiffnesses of rows differ by more than this and no set has ties
-    double       largest_regularization = 1e-4; // over the diagonal of F
-    double       gaps_over_forces       = 10;   // largest |gP| over tolerance times |PFP| times the forces
-    double       sufficient_decrease    = 1e-2; // a step must lower the natural residual by this part times its length;
-    double       backtracking           = 0.5;  // ... otherwise the length is multiplied by this, ...
-    double       shortest_step          = 1e-3; // ... down to this; then other sets are tried
-    unsigned int max_outer_iterations   = 100;
-    unsigned int n_directions           = 200; // number of directions stored with their products
+    unsigned int n_remembered_sets = 10; // ... among this number of the latest faces, if F may be singular, ...
+    double wide_stiffnesses = 1e6; // ... or stiffnesses of rows differ by more than this (with ties: newton_faces.h)
+    double largest_regularization = 1e-4; // over the diagonal of F
+    double gaps_over_forces       = 10;   // largest |gP| over tolerance times |PFP| times the forces
+    double sufficient_decrease    = 1e-2; // a step must lower the natural residual by this part times its length;
+    double backtracking           = 0.5;  // ... otherwise the length is multiplied by this, ...
+    double shortest_step          = 1e-3; // ... down to this; then other sets are tried
+    unsigned int      max_outer_iterations = 100;
+    unsigned int      n_directions         = 200; // number of directions stored with their products
     FaceSolverOptions face;
   };
 

@@ -15,7 +15,7 @@ namespace slipstick::tfeti
       unsigned int subdomain = 0;  // of this rank
       unsigned int touched   = 0;  // index of the unknown in SubdomainSystem::touched()
     };
-    Eigen::VectorXd   of_body; // by body, the same on all ranks [N mm]
+    Eigen::VectorXd   of_body; // by body, at least 0, the same on all ranks [N mm]
     std::vector<Spot> spots;   // by body
     DistributedVector forces;  // of the rows, M r on those that are kept closed [N]
   };

@@ -1,4 +1,4 @@
-#include <slipstick/app/side_balance.h>
+#include <slipstick/app/contact_cells.h>
 #include <slipstick/base/box_tree.h>
 #include <slipstick/base/gather.h>
 
