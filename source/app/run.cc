@@ -380,6 +380,7 @@ namespace slipstick::app
                            solver.mesh(),
                            solver.spaces(),
                            solver.dual(),
+                           answer.recovery.multipliers,
                            solution.free,
                            contact.nodes,
                            solver.elastic_part(u)));

@@ -3,6 +3,7 @@
 #include <slipstick/base/gather.h>
 #include <slipstick/base/log.h>
 #include <slipstick/base/text.h>
+#include <slipstick/contact/holding_forces.h>
 #include <slipstick/mechanics/deformation.h>
 #include <slipstick/tfeti/diagnosis.h>
 
@@ -32,6 +33,8 @@ namespace slipstick::app
     constexpr double largest_pressure = 1;
     // Ratio of overlap and slip to the length of an edge.
     constexpr double largest_step = 1;
+    // Ratio of the moment that displacements leave of balanced forces to the moments that hold a body.
+    constexpr double largest_moment = 0.02;
 
     /// A maximum and its place.
     struct Largest
@@ -135,9 +138,7 @@ namespace slipstick::app
                 pairs.insert(point.pair);
                 places.insert(point.position);
               }
-      for (const auto &of_rank :
-           all_gather(dual.communicator(),
-                                              std::vector<unsigned int>(pairs.begin(), pairs.end())))
+      for (const auto &of_rank : all_gather(dual.communicator(), std::vector<unsigned int>(pairs.begin(), pairs.end())))
         pairs.insert(of_rank.begin(), of_rank.end());
       std::vector<double> own;
       for (const auto &x : places)
@@ -159,6 +160,37 @@ namespace slipstick::app
         point_text(*places.begin(), dim).c_str());
     }
 
+    /// Bodies whose forces leave a moment where the displacements take them, for instance those that roll away. Bodies
+    /// with initial strains are left out: their loads contain forces that are in balance with stresses. Collective.
+    template <int dim>
+    std::map<std::string, std::string> balance_warnings(const scene::Scene<dim>            &scene,
+                                                        const tfeti::DualProblem           &dual,
+                                                        const tfeti::DistributedVector     &multipliers,
+                                                        const std::vector<Eigen::VectorXd> &u)
+    {
+      std::map<std::string, std::string> texts;
+      if (scene.plane_state == scene::PlaneState::axisymmetric)
+        return texts;
+      std::set<unsigned int> with_initial_strains;
+      for (const auto &temperature : scene.temperatures)
+        with_initial_strains.insert(temperature.bodies.begin(), temperature.bodies.end());
+      for (const auto &pretension : scene.pretensions)
+        with_initial_strains.insert(pretension.body);
+      const auto   moments = contact::displaced_moments(dual, u, multipliers, scene.bodies.size());
+      const double noise   = qp::force_rounding * moments.forces.maxCoeff();
+      for (unsigned int b = 0; b < scene.bodies.size(); ++b)
+        if (with_initial_strains.count(b) == 0 && moments.forces[b] > noise &&
+            moments.left[b] > largest_moment * moments.holding[b])
+          texts["balance " + scene.bodies[b].name] = format(
+            "Body %s: its forces balance where they act on the undeformed body, but where the displacements take "
+            "them they leave a moment of %.3g N mm, %.2g times the moments that hold it: it may roll or tip "
+            "further than the theory of small displacements says; hold it, or reduce the loads",
+            scene.bodies[b].name.c_str(),
+            moments.left[b],
+            moments.left[b] / moments.holding[b]);
+      return texts;
+    }
+
     template <int dim>
     std::string place(const scene::Scene<dim> &scene, const mechanics::Peak<dim> &peak)
     {
@@ -171,6 +203,7 @@ namespace slipstick::app
                                                        const mesh::Mesh<dim>                   &mesh,
                                                        const mechanics::Spaces<dim>            &spaces,
                                                        const tfeti::DualProblem                &dual,
+                                                       const tfeti::DistributedVector          &multipliers,
                                                        const std::vector<bool>                 &free,
                                                        const std::vector<contact::ContactNode> &nodes,
                                                        const std::vector<Eigen::VectorXd>      &u)
@@ -179,6 +212,7 @@ namespace slipstick::app
     const auto                         pairs = peaks_of_pairs(scene, dual.constraints(), nodes, mesh.comm);
     if (const std::string text = split_warning(scene, dual, free); !text.empty())
       texts["split"] = text;
+    texts.merge(balance_warnings(scene, dual, multipliers, u));
     texts.merge(curve_warnings(scene, mesh, spaces, dual.constraints().contact_points, nodes));
     for (unsigned int k = 0; k < pairs.size(); ++k)
       {
@@ -240,6 +274,7 @@ namespace slipstick::app
                                                                 const mesh::Mesh<2> &,
                                                                 const mechanics::Spaces<2> &,
                                                                 const tfeti::DualProblem &,
+                                                                const tfeti::DistributedVector &,
                                                                 const std::vector<bool> &,
                                                                 const std::vector<contact::ContactNode> &,
                                                                 const std::vector<Eigen::VectorXd> &);
@@ -247,6 +282,7 @@ namespace slipstick::app
                                                                 const mesh::Mesh<3> &,
                                                                 const mechanics::Spaces<3> &,
                                                                 const tfeti::DualProblem &,
+                                                                const tfeti::DistributedVector &,
                                                                 const std::vector<bool> &,
                                                                 const std::vector<contact::ContactNode> &,
                                                                 const std::vector<Eigen::VectorXd> &);

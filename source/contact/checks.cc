@@ -1,4 +1,5 @@
 #include <slipstick/contact/checks.h>
+#include <slipstick/contact/holding_forces.h>
 #include <slipstick/contact/node_law.h>
 #include <slipstick/qp/types.h>
 
@@ -83,11 +84,7 @@ namespace slipstick::contact
                     const unsigned int                  n_bodies,
                     Largest                            &on_node)
     {
-      DistributedVector outside = multipliers; // without forces between subdomains of a body
-      for (unsigned int r = 0; r < dual.constraints().kind.size(); ++r)
-        if (dual.constraints().kind[r] == tfeti::RowKind::gluing)
-          outside.local_element(r) = 0;
-      const auto all = dual.dual_operator().forces(multipliers), of_outside = dual.dual_operator().forces(outside);
+      const auto all = dual.dual_operator().forces(multipliers), holding = holding_forces(dual, multipliers);
 
       const unsigned int k =
         dealii::Utilities::MPI::max(dual.subdomains().empty()
@@ -99,9 +96,9 @@ namespace slipstick::contact
         {
           const auto           &system = *dual.subdomains()[p];
           const Eigen::VectorXd left   = nodal_forces[p] + all[p];
-          result.scale[system.body()] += system.load().cwiseAbs().sum() + of_outside[p].cwiseAbs().sum();
+          result.scale[system.body()] += system.load().cwiseAbs().sum() + holding[p].cwiseAbs().sum();
           result.largest =
-            std::max({result.largest, system.load().cwiseAbs().maxCoeff(), of_outside[p].cwiseAbs().maxCoeff()});
+            std::max({result.largest, system.load().cwiseAbs().maxCoeff(), holding[p].cwiseAbs().maxCoeff()});
           result.left.col(system.body()) += system.body_modes().transpose() * (system.kernel().transpose() * left);
           const Eigen::VectorXd rounding =
             rounding_of_forces * u[p].cwiseAbs().maxCoeff() * system.stiffness_diagonal();

@@ -24,6 +24,7 @@ namespace
                                   solved.torn.mesh,
                                   solved.torn.spaces,
                                   *solved.dual,
+                                  recovery.multipliers,
                                   solved.solution.free,
                                   checked.nodes,
                                   recovery.u);

@@ -622,5 +622,34 @@ class Resolution(unittest.TestCase):
         self.assertEqual(texts, [])
 
 
+class DisplacedForces(unittest.TestCase):
+    """Forces in balance on the undeformed body, but not where the displacements take them."""
+
+    def warnings(self, push, obstacles, masters, ranks=1):
+        case = scenes.box('disc', plane_state='plane strain', Decomposition={'Method': 'METIS', 'Subdomains': '3'},
+                          materials={'elastic': {'Young modulus': '1e4', 'Poisson ratio': '0.3'}},
+                          bodies={'d': {'Shape': 'disc', 'Radius': '10', 'Cells along arc': '192', 'Material': 'elastic'}},
+                          obstacles=obstacles, body_forces={'w': {'Force x': push, 'Force y': '-0.3'}},
+                          contacts={name: {'Slave': 'd/arc', 'Master': name, 'Law': 'Coulomb', 'Friction coefficient': '0.5'}
+                                    for name in masters})
+        return [text for text in converged(case, ranks=ranks).summary['warnings'] if 'leave a moment' in text]
+
+    def test_a_disc_that_rolls_away(self):
+        """Nothing but the arm of the normal forces stops it, since the contact moves along its arc: no equilibrium exists."""
+        plane = {'floor': {'Shape': 'half plane', 'Point': '0, -10', 'Normal': '0, 1'}}
+        for ranks in (1, 2):
+            text = only(self.warnings('0.015', plane, ['floor'], ranks=ranks))
+            self.assertRegex(text, r'^Body d: .* leave a moment of [0-9.]+ N mm, [0-9.]+ times the moments that hold it')
+            moment, ratio = (float(x) for x in re.search(r'of ([0-9.]+) N mm, ([0-9.]+) times', text).groups())
+            push = 0.015 * math.pi * 10**2
+            self.assertAlmostEqual(moment / (push * 10), 1, delta=0.1)  # the arm of the push about the floor is 10 mm
+            self.assertGreater(ratio, 1)
+
+    def test_a_disc_that_is_wedged(self):
+        groove = {'left': {'Shape': 'half plane', 'Point': '-7.0710678, -7.0710678', 'Normal': '1, 1'},
+                  'right': {'Shape': 'half plane', 'Point': '7.0710678, -7.0710678', 'Normal': '-1, 1'}}
+        self.assertEqual(self.warnings('0.015', groove, ['left', 'right']), [])
+
+
 if __name__ == '__main__':
     unittest.main()
