@@ -53,7 +53,7 @@ namespace slipstick::app
       if (line.quiet && line.verbose)
         throw InputError("--quiet and --verbose cannot be combined", "leave one of them out");
       if (line.resume && line.check)
-        throw InputError("--resume cannot be combined with --check and --draw", "leave one of them out");
+        throw InputError("--resume cannot be combined with --check or --draw", "leave one of them out");
       if (line.case_file.empty() && !line.list_parameters && !line.new_scene)
         throw InputError("no case file is given", usage);
     }
@@ -95,7 +95,7 @@ namespace slipstick::app
       app.add_option("--new", new_scene, "write a commented scene to start from: " + join_names(new_scene_names()))
         ->type_name("NAME");
     app.add_flag("--quiet", line.quiet, "print errors only");
-    app.add_flag("--verbose", line.verbose, "print every iteration");
+    app.add_flag("--verbose", line.verbose, "also print the boundaries of every body");
 
     try
       {
@@ -142,8 +142,8 @@ namespace slipstick::app
     const std::string name = std::filesystem::path(line.case_file).stem().string();
     if (output->count() == 0 && !line.list_parameters && !line.new_scene &&
         (name.empty() || name == "." || name == ".."))
-      throw InputError("the case file '" + line.case_file + "' gives no name to an output directory",
-                       "name the directory, for example --output output/case, or the file otherwise");
+      throw InputError("no output directory can be named after the case file '" + line.case_file + "'",
+                       "give one, for example --output output/case, or rename the case file");
     if (output->count() == 0)
       line.output_directory = (std::filesystem::path("output") / std::filesystem::path(line.case_file).stem()).string();
     return line;

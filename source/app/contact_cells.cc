@@ -1,10 +1,13 @@
 #include <slipstick/app/contact_cells.h>
 #include <slipstick/base/box_tree.h>
 #include <slipstick/base/gather.h>
+#include <slipstick/base/log.h>
+#include <slipstick/contact/contact_nodes.h>
 
 #include <deal.II/base/mpi.h>
 
 #include <boost/serialization/array.hpp>
+#include <boost/serialization/map.hpp>
 #include <boost/serialization/utility.hpp>
 #include <boost/serialization/vector.hpp>
 
@@ -19,6 +22,8 @@ namespace slipstick::app
   {
     // Master faces may be this much longer than slave faces: less than the factor 2 or 3 of one refinement.
     constexpr double largest_ratio = 1.6;
+    // Ratios of moduli and edges above which a slave is said to be much stiffer, and finer, than its master.
+    constexpr double much_stiffer = 10, much_finer = 1.2;
     // A face is at a contact node if its centre is closer than this fraction of its diameter (0.5 along an edge).
     constexpr double nearby = 0.6;
 
@@ -30,7 +35,7 @@ namespace slipstick::app
       std::array<double, dim> center{};
       double                  size     = 0; // diameter [mm]
       double                  division = 1; // of its edges by a refinement of its cell
-      mesh::CellKey           cell;
+      mesh::CellKey           cell{};
 
       template <class Archive>
       void serialize(Archive &archive, const unsigned int /*version*/)
@@ -56,8 +61,12 @@ namespace slipstick::app
     };
 
     /// Of the bodies in @p bodies, of all ranks on rank 0. Collective.
+    /// @param is_adaptive whether cells have keys: meshes that are refined consist of triangles, quadrilaterals and
+    /// tetrahedra.
     template <int dim>
-    std::vector<OutlineFace<dim>> outline_faces(const mesh::Mesh<dim> &mesh, const std::vector<bool> &bodies)
+    std::vector<OutlineFace<dim>> outline_faces(const mesh::Mesh<dim>   &mesh,
+                                                const std::vector<bool> &bodies,
+                                                const bool               is_adaptive)
     {
       std::vector<OutlineFace<dim>> own;
       for (const auto &subdomain : mesh.subdomains)
@@ -66,16 +75,19 @@ namespace slipstick::app
             for (const unsigned int f : cell->face_indices())
               if (const auto face = cell->face(f); mesh::is_on_outline(face))
                 {
-                  std::vector<mesh::GlobalVertex> vertices;
-                  for (const unsigned int v : cell->vertex_indices())
-                    vertices.push_back(subdomain->global_vertices[cell->vertex_index(v)]);
                   OutlineFace<dim> one;
                   one.body = subdomain->body;
                   for (unsigned int d = 0; d < dim; ++d)
                     one.center[d] = face->center()[d];
                   one.size     = face->diameter();
                   one.division = cell->reference_cell().is_hyper_cube() ? 3 : 2;
-                  one.cell     = mesh::cell_key(std::move(vertices));
+                  if (is_adaptive)
+                    {
+                      std::vector<mesh::GlobalVertex> vertices;
+                      for (const unsigned int v : cell->vertex_indices())
+                        vertices.push_back(subdomain->global_vertices[cell->vertex_index(v)]);
+                      one.cell = mesh::cell_key(std::move(vertices));
+                    }
                   own.push_back(std::move(one));
                 }
       std::vector<OutlineFace<dim>> all;
@@ -98,18 +110,20 @@ namespace slipstick::app
           reach = std::max(reach, nearby * face.size);
       }
 
-      /// Calls f(face) for those of the two bodies of the pair.
-      template <class F>
-      void for_each(const contact::ContactNode &node, const scene::ContactPair<dim> &pair, const F &f) const
+      /// Those of the two bodies of the pair.
+      std::vector<const OutlineFace<dim> *> at(const contact::ContactNode    &node,
+                                               const scene::ContactPair<dim> &pair) const
       {
-        dealii::Point<dim> x;
+        std::vector<const OutlineFace<dim> *> found;
+        dealii::Point<dim>                    x;
         for (unsigned int d = 0; d < dim; ++d)
           x[d] = node.position[d];
         const auto around = BoxTree<dim>::widened(BoxTree<dim>::box_around({x}), reach + std::abs(node.initial_gap));
         for (const unsigned int k : tree.near(around))
           if (const auto &face = faces[k];
               (face.body == pair.slave.body || (pair.master && face.body == pair.master->body)) && face.is_at(node))
-            f(face);
+            found.push_back(&face);
+        return found;
       }
 
     private:
@@ -147,7 +161,7 @@ namespace slipstick::app
         pairs[k] = bodies[pair.slave.body] = bodies[pair.master->body] = true;
     if (std::find(pairs.begin(), pairs.end(), true) == pairs.end())
       return 0;
-    const auto  faces    = outline_faces(mesh, bodies);
+    const auto  faces    = outline_faces(mesh, bodies, true);
     std::size_t n_marked = 0;
     if (dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0)
       {
@@ -163,12 +177,13 @@ namespace slipstick::app
             const auto                           &pair  = scene.contacts[node.pair];
             double                                slave = std::numeric_limits<double>::infinity();
             std::vector<const OutlineFace<dim> *> masters;
-            at_nodes.for_each(node, pair, [&](const OutlineFace<dim> &face) {
-              if (face.body == pair.slave.body)
-                slave = std::min(slave, size(face));
-              if (face.body == pair.master->body)
-                masters.push_back(&face);
-            });
+            for (const auto *face : at_nodes.at(node, pair))
+              {
+                if (face->body == pair.slave.body)
+                  slave = std::min(slave, size(*face));
+                if (face->body == pair.master->body)
+                  masters.push_back(face);
+              }
             for (const auto *face : masters)
               if (size(*face) > largest_ratio * slave)
                 {
@@ -178,6 +193,71 @@ namespace slipstick::app
           }
       }
     return dealii::Utilities::MPI::broadcast(mesh.comm, n_marked);
+  }
+
+  template <int dim>
+  std::map<std::string, std::string> finer_slave_warnings(const scene::Scene<dim>  &scene,
+                                                          const mesh::Mesh<dim>    &mesh,
+                                                          const tfeti::Constraints &constraints)
+  {
+    const auto modulus = [&scene](const unsigned int body) {
+      return scene.materials[scene.bodies[body].material].young_modulus;
+    };
+    std::vector<bool> bodies(scene.bodies.size(), false), pairs(scene.contacts.size(), false);
+    for (unsigned int k = 0; k < pairs.size(); ++k)
+      if (const auto &pair = scene.contacts[k];
+          pair.master && !pair.law.is_bonded && modulus(pair.slave.body) > much_stiffer * modulus(pair.master->body))
+        pairs[k] = bodies[pair.slave.body] = bodies[pair.master->body] = true;
+    std::map<std::string, std::string> texts;
+    if (std::find(pairs.begin(), pairs.end(), true) == pairs.end())
+      return texts;
+    const auto                        faces = outline_faces(mesh, bodies, false);
+    std::vector<contact::ContactNode> own;
+    for (const auto &point : constraints.contact_points)
+      if (pairs[point.pair])
+        own.push_back(contact::node_at(point));
+    const auto nodes = gather(mesh.comm, own);
+    if (dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0)
+      {
+        struct Edges
+        {
+          unsigned int n_nodes = 0, n_finer = 0; // that may touch
+          double       slave = 0, master = 0;    // sums over the finer ones [mm]
+        };
+        std::vector<Edges>      edges(pairs.size());
+        const FacesAtNodes<dim> at_nodes(faces);
+        for (const auto &of_rank : nodes)
+          for (const auto &node : of_rank)
+            {
+              double slave = 0, master = 0;
+              for (const auto *face : at_nodes.at(node, scene.contacts[node.pair]))
+                {
+                  double &size = face->body == scene.contacts[node.pair].slave.body ? slave : master;
+                  size         = std::max(size, face->size);
+                }
+              if (slave == 0 || master == 0 || node.initial_gap > slave)
+                continue;
+              auto &of_pair = edges[node.pair];
+              ++of_pair.n_nodes;
+              if (master <= much_finer * slave)
+                continue;
+              ++of_pair.n_finer;
+              of_pair.slave += slave;
+              of_pair.master += master;
+            }
+        for (unsigned int k = 0; k < pairs.size(); ++k)
+          if (const auto &of_pair = edges[k]; 2 * of_pair.n_finer > of_pair.n_nodes)
+            texts["finer " + scene.contacts[k].name] = format(
+              "Contact %s: its slave is stiffer (%.3g and %.3g MPa) and finer (edges of %.3g and %.3g mm) than its "
+              "master, so that nodal pressures and tractions alternate and the solver needs many steps; exchange "
+              "Slave and Master, or refine the master",
+              scene.contacts[k].name.c_str(),
+              modulus(scene.contacts[k].slave.body),
+              modulus(scene.contacts[k].master->body),
+              of_pair.slave / of_pair.n_finer,
+              of_pair.master / of_pair.n_finer);
+      }
+    return dealii::Utilities::MPI::broadcast(mesh.comm, texts);
   }
 
   template <int dim>
@@ -194,39 +274,46 @@ namespace slipstick::app
         if (scene.contacts[k].master)
           bodies[scene.contacts[k].master->body] = true;
       }
-    const auto  faces    = outline_faces(mesh, bodies);
+    const auto  faces    = outline_faces(mesh, bodies, true);
     std::size_t n_marked = 0;
     if (dealii::Utilities::MPI::this_mpi_process(mesh.comm) == 0)
       {
         const FacesAtNodes<dim> at_nodes(faces);
         for (const auto &node : nodes)
           if (node.is_closed && std::find(pairs.begin(), pairs.end(), node.pair) != pairs.end())
-            at_nodes.for_each(node, scene.contacts[node.pair], [&](const OutlineFace<dim> &face) {
-              const auto &[body, path] = refinement.cells.at(face.cell);
-              n_marked += refinement.refined[body].insert(path).second;
-            });
+            for (const auto *face : at_nodes.at(node, scene.contacts[node.pair]))
+              {
+                const auto &[body, path] = refinement.cells.at(face->cell);
+                n_marked += refinement.refined[body].insert(path).second;
+              }
       }
     return dealii::Utilities::MPI::broadcast(mesh.comm, n_marked);
   }
 
-  template std::size_t mark_contact_zones(const scene::Scene<2> &,
-                                          const mesh::Mesh<2> &,
-                                          const std::vector<contact::ContactNode> &,
-                                          const std::vector<unsigned int> &,
-                                          mesh::Refinement &);
-  template std::size_t mark_contact_zones(const scene::Scene<3> &,
-                                          const mesh::Mesh<3> &,
-                                          const std::vector<contact::ContactNode> &,
-                                          const std::vector<unsigned int> &,
-                                          mesh::Refinement &);
-  template std::size_t mark_coarse_masters(const scene::Scene<2> &,
-                                           const mesh::Mesh<2> &,
-                                           const std::vector<contact::ContactNode> &,
-                                           const std::vector<std::string> &,
-                                           mesh::Refinement &);
-  template std::size_t mark_coarse_masters(const scene::Scene<3> &,
-                                           const mesh::Mesh<3> &,
-                                           const std::vector<contact::ContactNode> &,
-                                           const std::vector<std::string> &,
-                                           mesh::Refinement &);
+  template std::map<std::string, std::string> finer_slave_warnings(const scene::Scene<2> &,
+                                                                   const mesh::Mesh<2> &,
+                                                                   const tfeti::Constraints &);
+  template std::map<std::string, std::string> finer_slave_warnings(const scene::Scene<3> &,
+                                                                   const mesh::Mesh<3> &,
+                                                                   const tfeti::Constraints &);
+  template std::size_t                        mark_contact_zones(const scene::Scene<2> &,
+                                                                 const mesh::Mesh<2> &,
+                                                                 const std::vector<contact::ContactNode> &,
+                                                                 const std::vector<unsigned int> &,
+                                                                 mesh::Refinement &);
+  template std::size_t                        mark_contact_zones(const scene::Scene<3> &,
+                                                                 const mesh::Mesh<3> &,
+                                                                 const std::vector<contact::ContactNode> &,
+                                                                 const std::vector<unsigned int> &,
+                                                                 mesh::Refinement &);
+  template std::size_t                        mark_coarse_masters(const scene::Scene<2> &,
+                                                                  const mesh::Mesh<2> &,
+                                                                  const std::vector<contact::ContactNode> &,
+                                                                  const std::vector<std::string> &,
+                                                                  mesh::Refinement &);
+  template std::size_t                        mark_coarse_masters(const scene::Scene<3> &,
+                                                                  const mesh::Mesh<3> &,
+                                                                  const std::vector<contact::ContactNode> &,
+                                                                  const std::vector<std::string> &,
+                                                                  mesh::Refinement &);
 } // namespace slipstick::app

@@ -71,9 +71,8 @@ namespace slipstick::app
       for (const auto &pair : scene.contacts)
         {
           const std::string name = "Contact " + pair.name + "/";
-          for (const auto *number : {&pair.law.fixed, &pair.law.coefficient, &pair.law.cap})
-            if (*number)
-              add(name + (*number)->name, (*number)->unit, pair.slave, (*number)->value, Scale::magnitude);
+          for (const auto *number : pair.law.numbers())
+            add(name + number->name, number->unit, pair.slave, number->value, Scale::magnitude);
           if (pair.gap)
             add(name + "Gap", "mm", pair.slave, *pair.gap, Scale::length);
           if (pair.gap || pair.master) // the obstacle itself is checked between the nodes

@@ -190,6 +190,9 @@ namespace slipstick::app
       for (const auto &point : *points)
         if (point.pair == pair)
           f(point);
+    for (const auto &shared : rows.shared_points)
+      if (shared.point.pair == pair)
+        f(shared.point);
   }
 
   template <int dim>
@@ -207,7 +210,7 @@ namespace slipstick::app
     Functional goal{name, "N", 0, std::vector<double>(n_rows, 0.), {}, {}};
     for_points_of(pair, [&](const tfeti::ContactPoint &point) {
       if (point.normal_row != tfeti::invalid_row)
-        goal.jumps[point.normal_row] = 1;
+        goal.jumps[point.normal_row] = point.share;
     });
     goal.value = value_of(goal.jumps);
     return goal;
@@ -221,7 +224,7 @@ namespace slipstick::app
       const double size = tangential(point);
       for (const unsigned int row : {point.tangential_row, point.second_row})
         if (row != tfeti::invalid_row)
-          goal.jumps[row] = dim == 2 ? 1. : size > 0 ? x.local_element(row) / size : 0.;
+          goal.jumps[row] = point.tangential_share * (dim == 2 ? 1. : size > 0 ? x.local_element(row) / size : 0.);
     });
     goal.value = value_of(goal.jumps);
     return goal;
@@ -271,7 +274,7 @@ namespace slipstick::app
     Functional square{name, "N/mm", 0, std::vector<double>(n_rows, 0.), {}, {}};
     for_points_of(pair, [&](const tfeti::ContactPoint &point) {
       if (point.normal_row != tfeti::invalid_row && point.traction_area > 0)
-        square.jumps[point.normal_row] = x.local_element(point.normal_row) / point.traction_area;
+        square.jumps[point.normal_row] = point.share * x.local_element(point.normal_row) / point.traction_area;
     });
     square.value = value_of(square.jumps);
     return as_norm(std::move(square));
@@ -282,9 +285,10 @@ namespace slipstick::app
   {
     Functional square{name, "N/mm", 0, std::vector<double>(n_rows, 0.), {}, {}};
     for_points_of(pair, [&](const tfeti::ContactPoint &point) {
+      const double part = point.tangential_share * point.tangential_share / point.share;
       for (const unsigned int row : {point.tangential_row, point.second_row})
-        if (row != tfeti::invalid_row && point.traction_area > 0)
-          square.jumps[row] = x.local_element(row) / point.traction_area;
+        if (row != tfeti::invalid_row && point.traction_area > 0 && point.share > 0)
+          square.jumps[row] = part * x.local_element(row) / point.traction_area;
     });
     square.value = value_of(square.jumps);
     return as_norm(std::move(square));

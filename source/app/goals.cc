@@ -247,6 +247,9 @@ namespace slipstick::app
           for (const auto &point : *points)
             if (point.traction_area > 0)
               own.push_back({{point.pair, point.key}, traction_at(point, x)});
+        for (const auto &shared : rows.shared_points)
+          if (shared.point.traction_area > 0)
+            own.push_back({{shared.point.pair, shared.point.key}, traction_at(shared.point, x)});
         Tractions result;
         for (const auto &list : all_gather(solver.mesh().comm, own))
           result.insert(list.begin(), list.end());

@@ -129,13 +129,17 @@ namespace
         const auto command_line = app::parse_command_line(argc, argv);
         if (command_line.message || command_line.list_parameters)
           {
-            if (prints && command_line.message)
-              std::cout << *command_line.message << std::flush;
-            else if (prints)
-              list_parameters(command_line);
-            if (prints && !std::cout.flush())
-              throw InputError("the text could not be written to standard output",
-                               "check where it is redirected to and whether there is space");
+            collectively(comm, [&] {
+              if (!prints)
+                return;
+              if (command_line.message)
+                std::cout << *command_line.message;
+              else
+                list_parameters(command_line);
+              if (!std::cout.flush())
+                throw InputError("the text could not be written to standard output",
+                                 "check where it is redirected to and whether there is space");
+            });
             return static_cast<int>(ExitStatus::converged);
           }
         if (command_line.new_scene)

@@ -219,10 +219,12 @@ namespace slipstick::app
         may_settle        = may_settle && has_bar && !bar->error && before != values.end() &&
                      std::abs(bar->value) <= settling * std::abs(before->second.back());
         if (without_estimate.empty())
-          without_estimate = goal + " has no estimate: " +
-                             (!has_bar      ? "the results do not include it"
-                              : !bar->error ? bar->reason
-                                            : "it is 0, as all figures of its kind, and 0 has no relative accuracy");
+          without_estimate =
+            goal + " has no estimate: " +
+            (!has_bar ? "the results do not include it"
+             : !bar->error
+               ? bar->reason
+               : "it is 0, like all other figures with the same unit, so that a relative accuracy is meaningless");
       }
     may_settle       = dealii::Utilities::MPI::broadcast(comm, may_settle);
     without_estimate = dealii::Utilities::MPI::broadcast(comm, without_estimate);
@@ -279,7 +281,10 @@ namespace slipstick::app
       return "";
     const std::string so_far =
       format("the accuracy of %g %% of %s is not reached: ", 100 * options.accuracy, what().c_str()) +
-      (is_known ? format("the error is %.3g %% after %zu meshes", 100 * rows.back().error, rows.size())
+      (is_known ? format("the error is %.3g %% after %zu mesh%s",
+                         100 * rows.back().error,
+                         rows.size(),
+                         rows.size() == 1 ? "" : "es")
                 : format("after %zu mesh%s %s", rows.size(), rows.size() == 1 ? "" : "es", without_estimate.c_str()));
     const auto goals = goals_of(steps);
     if (!is_known && !options.skips_unknown &&
@@ -370,14 +375,12 @@ namespace slipstick::app
     if (n_marked == 0)
       return "no cell is left whose refinement would reduce the error";
     if (growth * rows.back().unknowns > options.max_unknowns)
-      return format("the next mesh may have %.2g unknowns, allowed are %u (Adaptivity/Max unknowns)",
+      return format("the next mesh would have about %.2g unknowns; the limit is %u (Adaptivity/Max unknowns)",
                     growth * rows.back().unknowns,
                     options.max_unknowns);
     const double needed = dealii::Utilities::MPI::broadcast(comm, summary.memory_mb.peak_total * growth);
-    const double free =
-      dealii::Utilities::MPI::broadcast(comm,
-                                        free_memory_mb(dealii::Utilities::MPI::n_mpi_processes(comm)) +
-                                          summary.memory_mb.peak_total);
+    const double free   = dealii::Utilities::MPI::sum(share_of_free_memory_mb(comm), comm) +
+                        dealii::Utilities::MPI::broadcast(comm, summary.memory_mb.peak_total);
     if (needed > free)
       return format("the next mesh may need %.0f MB of memory, and %.0f MB are free", needed, free);
     return "";

@@ -1,6 +1,7 @@
 #include <slipstick/app/names.h>
 #include <slipstick/app/report.h>
 #include <slipstick/base/text.h>
+#include <slipstick/contact/contact_algorithms.h>
 #include <slipstick/scene/checks.h>
 
 #include <deal.II/base/config.h>
@@ -157,7 +158,7 @@ namespace slipstick::app
                          checks.tension,
                          checks.friction_bound)));
     log.line(line("",
-                  format("equilibrium of nodes %.1e, of bodies: forces %.1e, moments %.1e",
+                  format("nodal equilibrium %.1e; bodies: forces %.1e, moments %.1e",
                          checks.nodal_equilibrium,
                          checks.force_balance,
                          checks.moment_balance)));
@@ -172,6 +173,101 @@ namespace slipstick::app
     }
   } // namespace
 
+  namespace
+  {
+    /// The solver converged, but a check of the displacement fails.
+    std::string failed_check(const contact::DualSolution  &solution,
+                             const contact::Checks::Entry &worst,
+                             const std::string            &where,
+                             const double                  tolerance)
+    {
+      const double      reached   = std::max(solution.projected_gradient, solution.equality);
+      const double      reachable = rounded_up(margin_of_rounding * worst.value / check_factor);
+      const std::string what =
+        format("the check from the recovered displacement fails: %s is %.2e%s, allowed is %.2e; the solver reached "
+               "residuals of %.1e",
+               worst.name,
+               worst.value,
+               where.c_str(),
+               check_limit(tolerance),
+               reached);
+      if (!worst.is_balance && reached > residual_rounding)
+        return what + format("\n  remedy: set Solver/Tolerance to %.1g, and check the residuals in convergence.csv",
+                             reached / check_factor);
+      return what + "; iterating further does not help, since this is rounding\n  remedy: " +
+             (check_factor * reachable <= largest_limit
+                ? format(
+                    "set Solver/Tolerance to %g or more (now %g), or bring moduli, sizes and thicknesses closer together",
+                    reachable,
+                    tolerance)
+                : std::string(
+                    "double precision is not sufficient for this scene: bring moduli, sizes and thicknesses closer "
+                    "together, and also the edges of its elements"));
+    }
+
+    /// The residuals are small, but the slip bounds still change.
+    std::string unsettled_bounds(const contact::DualSolution &solution, const std::string &largest)
+    {
+      return format("not converged: the slip bounds still change by %.1e of their norm after %u updates",
+                    solution.bound_change,
+                    solution.friction_iterations) +
+             largest +
+             "; the results are written but are not a solution\n"
+             "  remedy: split the load into more steps (Load steps/Factors), " +
+             (is_tolerance(rounded_up(solution.bound_change))
+                ? format("set Friction/Tolerance to %g or more, ", rounded_up(solution.bound_change))
+                : "") +
+             "or raise Friction/Max iterations; with a large friction coefficient there may be no or many solutions";
+    }
+
+    /// No tolerance would help.
+    std::string inconsistent_forces(const contact::DualSolution &solution,
+                                    const std::string           &largest,
+                                    const bool                   balances)
+    {
+      return (balances
+                ? format("not converged: friction and normal forces do not converge to consistent values (residuals "
+                         "of %.1e of |Pd|)",
+                         std::max(solution.projected_gradient, solution.equality))
+                : format("not converged: the contact forces found do not balance the loads (violation of G x = e of "
+                         "%.1e of |Pd|)",
+                         solution.equality)) +
+             largest +
+             "; the results are not a solution\n  remedy: support bodies that friction alone holds, press them together "
+             "(before they are loaded along the contact: Load steps/Factors), or lower the load";
+    }
+
+    /// The residuals are above the tolerance.
+    /// @param asked the algorithm that the scene asks for.
+    std::string missed_tolerance(const contact::DualSolution &solution,
+                                 const scene::Algorithm       asked,
+                                 const std::string           &largest,
+                                 const double                 tolerance)
+    {
+      const double reached     = std::max(solution.projected_gradient, solution.equality);
+      const bool   limit       = solution.status == qp::Status::iteration_limit;
+      const bool   is_given_up = // beyond the limit of the default algorithm, which no option raises
+        asked != scene::Algorithm::smalbe && solution.counts.hessian_multiplications > contact::longest_fallback;
+      const std::string raise =
+        is_tolerance(rounded_up(reached))
+          ? format("set Solver/Tolerance to %g or more, and check the residuals in convergence.csv",
+                   rounded_up(reached))
+          : "check the residuals in convergence.csv; possible causes are loads and supports that are barely in equilibrium, "
+            "and very different moduli or sizes";
+      return format("not converged: the solver %s: %s is %.1e of |Pd|, the tolerance is %g",
+                    limit ? "reached its iteration limit" : "stagnated",
+                    solution.projected_gradient >= solution.equality ? "the projected gradient"
+                                                                     : "the violation of G x = e",
+                    reached,
+                    tolerance) +
+             largest + "; the results are not a solution\n  remedy: " +
+             (!limit                                        ? raise
+              : solution.algorithm == scene::Algorithm::pcg ? "raise Solver/PCG/Max iterations"
+              : is_given_up ? "split the load into more steps (Load steps/Factors), or " + raise
+                            : "raise Solver/SMALBE/Max outer iterations or Max inner iterations");
+    }
+  } // namespace
+
   template <int dim>
   void print_failure(const Log                   &log,
                      const scene::Scene<dim>     &scene,
@@ -182,88 +278,17 @@ namespace slipstick::app
     const auto        worst = checks.worst_entry();
     const std::string where = place(scene, worst.place);
     if (solution.status == qp::Status::converged)
-      {
-        const double      reached   = std::max(solution.projected_gradient, solution.equality);
-        const double      reachable = rounded_up(margin_of_rounding * worst.value / check_factor);
-        const std::string what =
-          format("the check from the recovered displacement fails: %s is %.2e%s, allowed is %.2e; the solver reached "
-                 "residuals of %.1e",
-                 worst.name,
-                 worst.value,
-                 where.c_str(),
-                 check_limit(tolerance),
-                 reached);
-        if (!worst.is_balance && reached > residual_rounding)
-          {
-            log.warning(what +
-                        format("\n  remedy: set Solver/Tolerance to %.1g, and check the residuals in convergence.csv",
-                               reached / check_factor));
-            return;
-          }
-        log.warning(
-          what + "; iterating further does not help, since this is rounding\n  remedy: " +
-          (check_factor * reachable <= largest_limit
-             ? format(
-                 "set Solver/Tolerance to %g or more (now %g), or bring moduli, sizes and thicknesses closer together",
-                 reachable,
-                 tolerance)
-             : std::string(
-                 "double precision is not sufficient for this scene: bring moduli, sizes and thicknesses closer together, and "
-                 "also the edges of its elements")));
-        return;
-      }
+      return log.warning(failed_check(solution, worst, where, tolerance));
     const std::string largest =
       format("; largest error of the displacement: %s %.1e%s", worst.name, worst.value, where.c_str());
-    const bool friction =
-      solution.friction_iterations > 0 && solution.projected_gradient <= tolerance && solution.equality <= tolerance;
-    if (friction)
-      {
-        log.warning(
-          format("not converged: the slip bounds still change by %.1e of their norm after %u updates",
-                 solution.bound_change,
-                 solution.friction_iterations) +
-          largest +
-          "; the results are written but are not a solution\n"
-          "  remedy: split the load into more steps (Load steps/Factors), " +
-          (is_tolerance(rounded_up(solution.bound_change))
-             ? format("set Friction/Tolerance to %g or more, ", rounded_up(solution.bound_change))
-             : "") +
-          "or raise Friction/Max iterations; with a large friction coefficient there may be no or many solutions");
-        return;
-      }
-    const bool   limit     = solution.status == qp::Status::iteration_limit;
-    const double reached   = std::max(solution.projected_gradient, solution.equality);
-    const bool   is_linear = solution.algorithm == scene::Algorithm::pcg;
-    const bool   balances  = solution.equality <= tolerance;
-    if (reached <= tolerance || (!is_linear && !limit && !balances)) // no tolerance would help
-      {
-        log.warning(
-          (balances
-             ? format(
-                 "not converged: friction and normal forces do not converge to consistent values (residuals of %.1e of |Pd|)",
-                 reached)
-             : format(
-                 "not converged: the contact forces found do not balance the loads (violation of G x = e of %.1e of |Pd|)",
-                 solution.equality)) +
-          largest +
-          "; the results are not a solution\n  remedy: support bodies that friction alone holds, press them together (before they are "
-          "loaded along the contact: Load steps/Factors), or lower the load");
-        return;
-      }
-    const std::string raise =
-      is_tolerance(rounded_up(reached))
-        ? format("set Solver/Tolerance to %g or more, and check the residuals in convergence.csv", rounded_up(reached))
-        : "check the residuals in convergence.csv; possible causes are loads and supports that are barely in equilibrium, and very different moduli or sizes";
-    log.warning(
-      format("not converged: the solver %s: %s is %.1e of |Pd|, the tolerance is %g",
-             limit ? "reached its iteration limit" : "stagnated",
-             solution.projected_gradient >= solution.equality ? "the projected gradient" : "the violation of G x = e",
-             reached,
-             tolerance) +
-      largest + "; the results are not a solution\n  remedy: " +
-      (!limit      ? raise
-       : is_linear ? "raise Solver/PCG/Max iterations"
-                   : "raise Solver/SMALBE/Max outer iterations or Max inner iterations"));
+    const bool balances = solution.equality <= tolerance;
+    const bool reached  = solution.projected_gradient <= tolerance && balances;
+    if (reached && solution.friction_iterations > 0)
+      return log.warning(unsettled_bounds(solution, largest));
+    if (reached ||
+        (solution.algorithm != scene::Algorithm::pcg && solution.status != qp::Status::iteration_limit && !balances))
+      return log.warning(inconsistent_forces(solution, largest, balances));
+    log.warning(missed_tolerance(solution, scene.solver.algorithm, largest, tolerance));
   }
 
   namespace

@@ -160,7 +160,7 @@ namespace slipstick
     template <class Archive>
     void serialize(Archive &a, RunState &x, const unsigned int)
     {
-      a &x.solver &x.summary &x.contact_steps &x.total_slip &x.warnings &x.warned_about;
+      a &x.solver &x.summary &x.contact_steps &x.total_slip &x.largest_force &x.warnings &x.warned_about;
     }
   } // namespace app
 } // namespace slipstick
@@ -172,7 +172,7 @@ namespace slipstick::app
   {
     const std::string head_name = "restart.bin";
     // Number of the file format; it must change with the layout.
-    constexpr unsigned int format_number = 10;
+    constexpr unsigned int format_number = 11;
 
     /// Contents of restart.bin: identifies the run to which the files belong.
     struct Head
@@ -183,15 +183,15 @@ namespace slipstick::app
       unsigned int             steps = 0;
       std::string              parameters; // without the load factors
       std::vector<double>      load_factors;
-      std::vector<std::string> mesh_files;
-      std::vector<std::size_t> sums_of_mesh_files;
+      std::vector<std::string> files; // meshes of bodies, surfaces of obstacles
+      std::vector<std::size_t> sums_of_files;
 
       template <class Archive>
       void serialize(Archive &a, const unsigned int)
       {
         a &format;
         if (format == format_number)
-          a &version &ranks &steps &parameters &load_factors &mesh_files &sums_of_mesh_files;
+          a &version &ranks &steps &parameters &load_factors &files &sums_of_files;
       }
     };
 
@@ -217,11 +217,12 @@ namespace slipstick::app
       head.parameters   = std::regex_replace(scene.parameters, factors, "");
       head.load_factors = scene.load_factors;
       for (const auto &body : scene.bodies)
-        if (!body.file.empty())
-          {
-            head.mesh_files.push_back(body.file);
-            head.sums_of_mesh_files.push_back(sum_of(body.file));
-          }
+        head.files.push_back(body.file);
+      for (const auto &obstacle : scene.obstacles)
+        head.files.push_back(obstacle.file);
+      head.files.erase(std::remove(head.files.begin(), head.files.end(), ""), head.files.end());
+      for (const auto &file : head.files)
+        head.sums_of_files.push_back(sum_of(file));
       return head;
     }
 
@@ -274,7 +275,12 @@ namespace slipstick::app
 
     void check_same(const Head &before, const Head &now, const std::string &path)
     {
-      if (before.format != now.format || before.version != now.version)
+      if (before.format != now.format)
+        refuse(format("the restart files in '%s' have another format (%u; this version of slipstick writes %u)",
+                      path.c_str(),
+                      before.format,
+                      now.format));
+      if (before.version != now.version)
         refuse("the files in '" + path + "' are from version " + before.version + " of slipstick, this is " +
                now.version);
       if (before.ranks != now.ranks)
@@ -282,9 +288,9 @@ namespace slipstick::app
       if (before.parameters != now.parameters)
         refuse("the scene differs from that of the run in '" + path + "', first at '" +
                first_difference(before.parameters, now.parameters) + "'");
-      for (std::size_t i = 0; i < now.mesh_files.size(); ++i)
-        if (i >= before.mesh_files.size() || before.sums_of_mesh_files[i] != now.sums_of_mesh_files[i])
-          refuse("the mesh file '" + now.mesh_files[i] + "' has changed since the run in '" + path + "'");
+      for (std::size_t i = 0; i < now.files.size(); ++i)
+        if (i >= before.files.size() || before.sums_of_files[i] != now.sums_of_files[i])
+          refuse("the file '" + now.files[i] + "' has changed since the run in '" + path + "'");
       for (unsigned int step = 0; step < before.steps; ++step)
         if (step >= now.load_factors.size() || before.load_factors[step] != now.load_factors[step])
           refuse(

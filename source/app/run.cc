@@ -104,6 +104,7 @@ namespace slipstick::app
       {
         directory.remove_results(); // the scene is valid: results of an earlier run are removed
         output::write_conditions(directory, scene, solver.mesh(), solver.spaces());
+        warn(finer_slave_warnings(scene, solver.mesh(), solver.dual().constraints()));
       }
     first_step  = summary.steps.size();
     steps_began = clock.total();
@@ -233,6 +234,7 @@ namespace slipstick::app
     warned_about   = std::move(state.warned_about);
     finished_steps = state.summary;
     kept_steps     = state.summary.steps.size();
+    largest_force  = state.largest_force;
     solver.resume(state.solver);
     log.line(format("resumed      after load step %u of %zu", kept_steps, scene.load_factors.size()));
     return std::move(state.summary);
@@ -278,7 +280,10 @@ namespace slipstick::app
     const double begin = clock.total();
     summary.status     = output::RunStatus::unfinished;
     describe_run(summary);
-    write_restart(directory, scene, {solver.state(), summary, contact_steps, total_slip, warnings, warned_about}, comm);
+    write_restart(directory,
+                  scene,
+                  {solver.state(), summary, contact_steps, total_slip, largest_force, warnings, warned_about},
+                  comm);
     write(summary);
     kept_steps = step + 1;
     announce(step + 1);

@@ -37,7 +37,7 @@ namespace slipstick::app
                  const MPI_Comm                  comm)
   {
     if (resumes && adaptivity.refines())
-      throw InputError("--resume: a run that refines its meshes cannot go on",
+      throw InputError("--resume: adaptive runs cannot be resumed",
                        "start it anew, without --resume, or give Accuracy without a percentage");
     const output::OutputDirectory directory(output_directory, comm);
     std::optional<Run<dim>>       steps;

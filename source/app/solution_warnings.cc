@@ -54,12 +54,12 @@ namespace slipstick::app
     /// Maxima for one contact pair, with the length of the longest edge.
     struct OfPair
     {
-      Largest overlap, slip, pressure;
+      Largest overlap, slip, pressure, bridged;
       double  edge = 0;
 
-      std::array<Largest *, 3> values()
+      std::array<Largest *, 4> values()
       {
-        return {{&overlap, &slip, &pressure}};
+        return {{&overlap, &slip, &pressure, &bridged}};
       }
     };
 
@@ -106,6 +106,12 @@ namespace slipstick::app
           pair.pressure.take(node.pressure, x);
           if (point.has_master && node.is_closed)
             pair.slip.take(std::abs(node.slip), x);
+          pair.edge = std::max(pair.edge, dim == 2 ? point.traction_length : std::sqrt(point.traction_length));
+        }
+      for (const auto &point : constraints.bonded_points)
+        {
+          auto &pair = own[point.pair];
+          pair.bridged.take(std::abs(point.gap), point.position.data());
           pair.edge = std::max(pair.edge, dim == 2 ? point.traction_length : std::sqrt(point.traction_length));
         }
       return over_all_ranks(own, comm);
@@ -226,6 +232,14 @@ namespace slipstick::app
                    pair.overlap.value,
                    point_text(pair.overlap.at, dim).c_str(),
                    pair.edge);
+        if (pair.bridged.value > largest_step * pair.edge)
+          texts["bridged " + name] = format(
+            "Contact %s: it bonds across a gap of %.4g mm at %s, more than an edge of %.4g mm; shorten its Reach, "
+            "or bond the part of the boundary that touches (where)",
+            name.c_str(),
+            pair.bridged.value,
+            point_text(pair.bridged.at, dim).c_str(),
+            pair.edge);
         if (pair.slip.value > largest_step * pair.edge)
           texts["slip " + name] =
             format("Contact %s: its sides slide by %.4g mm at %s, more than an edge of %.4g mm, but contact is "

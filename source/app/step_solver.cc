@@ -38,7 +38,7 @@ namespace slipstick::app
     // Tolerance = auto: admissible ratio of algebraic to discretisation error. The two are nearly orthogonal, so that
     // the algebraic error adds 2 % to the total error, 5 % if both estimates are wrong by a quarter.
     constexpr double allowed_part = 0.2;
-    // Tolerance = auto: admissible error of the tractions of a pair.
+    // Admissible estimated error of the tractions of a pair, beside Solver/Tolerance; Tolerance = auto ends there.
     constexpr double allowed_traction_error = 0.05;
 
     template <int dim>
@@ -465,30 +465,36 @@ namespace slipstick::app
     const double limit = check_limit(tolerance_of(discrete_scene().solver, dual_solution));
     for (unsigned int n = 0; n < max_tightenings && dual_solution.status == qp::Status::converged; ++n)
       {
-        const auto   worst = answer->contact->checks.worst_entry();
+        const auto   worst     = answer->contact->checks.worst_entry();
+        const bool   is_sound  = worst.value <= limit;
+        const double tractions = answer->contact->checks.largest_traction_error();
         const double reached =
           std::min(options.tolerance, std::max(dual_solution.projected_gradient, dual_solution.equality));
-        if (worst.value <= limit || worst.is_balance)
+        if (is_sound ? !(tractions > allowed_traction_error) : worst.is_balance)
           break;
         // also if the check is NaN
-        const double excess = std::min(largest_tightening, std::max(least_tightening, worst.value / limit));
-        options.tolerance   = std::max(reached / (margin_of_tightening * excess), least_tolerance);
-        if (options.tolerance < tolerance_of_rounding && close_gaps(*answer, step, limit))
+        const double excess =
+          std::min(largest_tightening,
+                   std::max({least_tightening, worst.value / limit, tractions / allowed_traction_error}));
+        options.tolerance = std::max(reached / (margin_of_tightening * excess), least_tolerance);
+        if (!is_sound && options.tolerance < tolerance_of_rounding && close_gaps(*answer, step, limit))
           break;
         if (reached <= least_tolerance)
           break;
         log.line(format("checks       %s is %.1e, allowed is %.1e: continuing with a tolerance of %.1e",
-                        worst.name,
-                        worst.value,
-                        limit,
+                        is_sound ? "error of pressures or tangential tractions" : worst.name,
+                        is_sound ? tractions : worst.value,
+                        is_sound ? allowed_traction_error : limit,
                         options.tolerance));
         const auto   before       = dual_solution;
         const double kept         = problem.kept_part();
         dual_solution.multipliers = answer->recovery.multipliers;
-        auto next = checked(solve_step(step, multiplications_before, true), discrete_scene().load_factors[step]);
-        if (problem.kept_part() != kept ||
-            (dual_solution.status == qp::Status::converged &&
-             (worst.value > of_no_answer || next->contact->checks.worst().second < worst.value)))
+        auto        next = checked(solve_step(step, multiplications_before, true), discrete_scene().load_factors[step]);
+        const auto &checks      = next->contact->checks;
+        const bool  is_improved = is_sound
+                                    ? checks.worst().second <= limit && checks.largest_traction_error() < tractions
+                                    : worst.value > of_no_answer || checks.worst().second < worst.value;
+        if (problem.kept_part() != kept || (dual_solution.status == qp::Status::converged && is_improved))
           answer = std::move(next); // the first solution has been solved again with rows for more contact nodes
         else
           { // it has converged to the requested tolerance

@@ -12,7 +12,8 @@ namespace slipstick::detail
     using dealii::Utilities::MPI::n_mpi_processes;
     using dealii::Utilities::MPI::this_mpi_process;
     if (dealii::Utilities::MPI::sum(own.size(), comm) > static_cast<std::size_t>(std::numeric_limits<int>::max()))
-      throw NumericalError("the ranks exchange more than 2 GB at a time, the limit of MPI", "use a coarser mesh");
+      throw InputError("the ranks would exchange more than 2 GB in one message, the limit of MPI",
+                       "use a coarser mesh");
     const int        n_own       = own.size();
     const bool       is_receiver = !root || this_mpi_process(comm) == *root;
     std::vector<int> sizes(is_receiver ? n_mpi_processes(comm) : 0);

@@ -1,5 +1,6 @@
 #include <slipstick/base/log.h>
 
+#include <deal.II/base/exceptions.h>
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
@@ -53,7 +54,9 @@ namespace slipstick
     va_list arguments, again;
     va_start(arguments, pattern);
     va_copy(again, arguments);
-    std::string text(static_cast<std::size_t>(std::vsnprintf(nullptr, 0, pattern, arguments)), ' ');
+    const int length = std::vsnprintf(nullptr, 0, pattern, arguments);
+    AssertThrow(length >= 0, dealii::ExcMessage(std::string("invalid pattern or text: ") + pattern));
+    std::string text(length, ' ');
     std::vsnprintf(text.data(), text.size() + 1, pattern, again);
     va_end(again);
     va_end(arguments);

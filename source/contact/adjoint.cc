@@ -151,10 +151,10 @@ namespace slipstick::contact
     const double                        summed   = of_jumps.l2_norm() + d.l2_norm() + product.l2_norm();
     const double                        residual = solver.start(std::move(x), std::move(product));
     auto result = solver.solve_symmetric(std::max(tolerance * residual, rounding * summed));
-    if (result.status != qp::Status::converged && !(result.residual <= rounding_that_stays * summed))
-      return {};
     work += result.counts;
     ++work.hessian_multiplications;
+    if (result.status != qp::Status::converged && !(result.residual <= rounding_that_stays * summed))
+      return {};
     auto recovery = tfeti::recover(dual, result.x, free);
     return Answer{std::move(recovery.u), std::move(recovery.multipliers)};
   }

@@ -139,7 +139,7 @@ namespace slipstick::contact
                  const std::vector<bool>            &free_,
                  const unsigned int                  n_bodies_,
                  const History                      &history_,
-                 const std::vector<double>          &energies_beside_)
+                 const std::vector<double>          &initial_strain_energies_)
         : dual(dual_)
         , law(law_)
         , constraints(dual_.constraints())
@@ -150,7 +150,7 @@ namespace slipstick::contact
         , free(free_)
         , n_bodies(n_bodies_)
         , history(history_)
-        , initial_strain_energies(energies_beside_)
+        , initial_strain_energies(initial_strain_energies_)
         , jumps(dual_.dual_operator().jumps(u_))
         , deformed(deformations(dual_, u_))
         , forces(nodal_forces(dual_, deformed))
@@ -174,6 +174,7 @@ namespace slipstick::contact
             result.checks.places[i] = largest[i].place;
           }
         make_relative(on_bodies, scales);
+        divide_shared_nodes();
         return std::move(result);
       }
 
@@ -291,6 +292,21 @@ namespace slipstick::contact
         for (double *maximum : {&largest_contact, &largest_gap})
           *maximum = dealii::Utilities::MPI::max(*maximum, comm);
         result.checks.largest_force = largest_contact;
+      }
+
+      /// Nodes so far have the forces of all pairs that meet there: divides them, nodes of other pairs are added behind.
+      void divide_shared_nodes()
+      {
+        auto      &nodes = result.nodes;
+        const auto whole = nodes;
+        const auto n     = constraints.contact_points.size();
+        for (unsigned int i = 0; i < nodes.size(); ++i)
+          nodes[i] = part_of(whole[i], i < n ? constraints.contact_points[i] : constraints.bonded_points[i - n]);
+        for (const auto &shared : constraints.shared_points)
+          {
+            nodes.push_back(part_of(whole[shared.carrier + (shared.is_bonded ? n : 0)], shared.point));
+            result.keys.push_back(shared.point.key);
+          }
       }
 
       /// Checks the contact law at the nodes, except bonded ones.

@@ -131,6 +131,28 @@ namespace slipstick::contact
     node.moment_mismatch = moment_mismatch(point, node, node.pressure * node.area, tangential);
     return node;
   }
+
+  ContactNode part_of(const ContactNode &whole, const tfeti::ContactPoint &point)
+  {
+    if (point.share == 1 && point.tangential_share == 1)
+      return whole;
+    ContactNode  part = whole;
+    const double more = point.share > 0 ? point.tangential_share / point.share : 0.; // of the tangential traction
+    part.pair         = point.pair;
+    part.length       = point.length;
+    part.area *= point.share;
+    part.tangential_traction *= more;
+    for (double &component : part.traction)
+      component *= more;
+    if (std::isfinite(part.slip_bound))
+      part.slip_bound *= more;
+    for (double &component : part.moment_mismatch)
+      component *= point.share;
+    if (more == 0) // frictionless
+      part.status = status_of(part.is_closed, 0., false);
+    return part;
+  }
+
   std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
                                        const std::vector<std::string> &pair_names,
                                        const unsigned int              dim)

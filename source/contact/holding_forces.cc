@@ -36,10 +36,6 @@ namespace slipstick::contact
     for (unsigned int r = 0; r < constraints.kind.size(); ++r)
       if (constraints.kind[r] == tfeti::RowKind::gluing)
         outside.local_element(r) = 0;
-    for (const auto &point : constraints.bonded_points) // their rows are gluing between bodies
-      for (const unsigned int row : {point.normal_row, point.tangential_row, point.second_row})
-        if (row != tfeti::invalid_row)
-          outside.local_element(row) = multipliers.local_element(row);
     auto forces = dual.dual_operator().forces(outside);
     for (auto &of_subdomain : forces)
       of_subdomain *= -1;

@@ -5,6 +5,7 @@
 #include <slipstick/tfeti/face.h>
 
 #include <cmath>
+#include <optional>
 
 namespace slipstick::contact
 {
@@ -40,105 +41,153 @@ namespace slipstick::contact
     return std::sqrt(tfeti::jump_energies(dual, r, held).of_body.sum());
   }
 
+  namespace
+  {
+    /// With an accuracy test or tractions to judge, the problem is solved in stages, each with the directions of the
+    /// earlier ones.
+    class LinearSolver
+    {
+    public:
+      LinearSolver(const tfeti::DualProblem   &dual_,
+                   const scene::SolverOptions &options_,
+                   const ProgressObserver     &observer_,
+                   const DualSolution         *previous_,
+                   const AccuracyTest         &is_accurate_)
+        : dual(dual_)
+        , options(options_)
+        , observer(observer_)
+        , previous(previous_)
+        , is_accurate(is_accurate_)
+        , face(dual_.face(std::vector<bool>(dual_.zero().locally_owned_size(), true)))
+        , is_preconditioned(dual_.preconditioner() != nullptr)
+        , pcpg(options_.pcpg)
+        , reorthogonalizes(is_preconditioned)
+        , start(dual_.particular())
+        , from{dual_.zero()}
+      {}
+
+      DualSolution operator()()
+      {
+        solution.free             = std::vector<bool>(start.locally_owned_size(), true);
+        solution.slip_bound       = std::vector<double>(start.locally_owned_size(), 0.);
+        solution.algorithm        = scene::Algorithm::pcg;
+        solution.largest_traction = previous ? previous->largest_traction : 0.;
+        b                         = homogenised_load(dual, start);
+        ++solution.counts.hessian_multiplications;
+        reference = tfeti::residual_norm(dual, b);
+        if (reference > 0)
+          solve();
+        else // no deformation
+          {
+            solution.multipliers = start;
+            solution.status      = qp::Status::converged;
+          }
+        return std::move(solution);
+      }
+
+    private:
+      void solve()
+      {
+        if (previous) // continue from the true residual instead of the recursion of an earlier solve
+          {
+            start = previous->multipliers;
+            face.balance(start);
+            b = homogenised_load(dual, start);
+            ++solution.counts.hessian_multiplications;
+          }
+        tractions.emplace(dual, options.tolerance, start.linfty_norm(), solution.largest_traction);
+        if (is_accurate || tractions->has_pairs())
+          from.history = std::make_shared<qp::DirectionHistory<Vector>>(is_preconditioned);
+        bool has_met_goal = false;
+        for (double tolerance = is_accurate ? std::max(first_asked, options.tolerance) : options.tolerance;;
+             tolerance        = std::max(has_met_goal ? 0. : options.tolerance, part_of_residual * tolerance))
+          {
+                   auto result = stage(tolerance);
+                   if (has_met_goal &&
+                result.status != qp::Status::converged) // the point that met the goal is at rounding level
+              break;
+                   solution.status             = result.status;
+                   solution.projected_gradient = result.relative_residual;
+                   solution.multipliers        = start;
+                   solution.multipliers += result.x;
+                   if (result.status == qp::Status::stagnated && !reorthogonalizes)
+              { // rounding has destroyed the conjugacy of the directions
+                reorthogonalizes         = true;
+                pcpg.reorthogonalization = qp::Reorthogonalization::full;
+                from                     = {std::move(result.x)};
+                tolerance /= part_of_residual; // repeat the stage
+                continue;
+              }
+            if (result.status != qp::Status::converged)
+              break;
+            has_met_goal = tolerance <= options.tolerance;
+                   if (has_met_goal ? is_right(result.residual, tolerance) : is_accurate_enough(result.residual))
+              break;
+            from.x       = std::move(result.x);
+                   from.product = std::move(result.product);
+          }
+        solution.counts.outer_iterations = 1;
+        solution.largest_traction        = tractions->largest(solution.multipliers);
+      }
+
+      qp::PcpgResult<Vector> stage(const double tolerance)
+      {
+        const auto         before  = solution.counts;
+        const qp::Observer counted = [&](qp::OuterStep step) {
+          step.hessian_multiplications += before.hessian_multiplications;
+          step.outer += before.cg_steps;
+          if (observer)
+            observer({step, 0});
+        };
+        const auto     precondition = [this](const Vector &r, Vector &z) { face.precondition(r, z); };
+        const qp::Goal goal(tolerance, reference);
+        auto           result = is_preconditioned ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
+                                                  : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
+        solution.counts += result.counts;
+        return result;
+      }
+
+      /// Whether tractions are accurate where the tolerance is met, or cannot become so.
+      bool is_right(const Vector &residual, const double tolerance)
+      {
+        if (!tractions->has_pairs() || tolerance <= options.newton.least_part * options.tolerance)
+          return true;
+        Vector error = dual.zero();
+        face.precondition(residual, error);
+        ++solution.counts.preconditioner_applications;
+        face.project_kernel(error);
+        return tractions->accepts(solution.multipliers, error);
+      }
+
+      bool is_accurate_enough(Vector &residual) const
+      {
+        residual *= dual.norm();
+        return is_accurate(solution, residual_energy(dual, residual));
+      }
+
+      const tfeti::DualProblem   &dual;
+      const scene::SolverOptions &options;
+      const ProgressObserver     &observer;
+      const DualSolution         *previous;
+      const AccuracyTest         &is_accurate;
+      const tfeti::Face           face;
+      const bool                  is_preconditioned;
+      qp::PcpgOptions             pcpg;
+      bool                        reorthogonalizes;
+      Vector                      start, b;
+      double                      reference = 0;
+      qp::PcpgStart<Vector>       from;
+      std::optional<TractionTest> tractions;
+      DualSolution                solution;
+    };
+  } // namespace
+
   DualSolution solve_linear(const tfeti::DualProblem   &dual,
                             const scene::SolverOptions &options,
                             const ProgressObserver     &observer,
                             const DualSolution         *previous,
                             const AccuracyTest         &is_accurate)
   {
-    Vector       start = dual.particular();
-    DualSolution solution;
-    solution.free          = std::vector<bool>(start.locally_owned_size(), true);
-    solution.slip_bound    = std::vector<double>(start.locally_owned_size(), 0.);
-    solution.algorithm     = scene::Algorithm::pcg;
-    const auto   face      = dual.face(solution.free);
-    auto         b         = homogenised_load(dual, start);
-    const double reference = tfeti::residual_norm(dual, b);
-    if (reference == 0) // no deformation
-      {
-        solution.multipliers = start;
-        solution.status      = qp::Status::converged;
-        ++solution.counts.hessian_multiplications;
-        return solution;
-      }
-    const auto precondition = [&face](const Vector &r, Vector &z) { face.precondition(r, z); };
-    if (previous) // continue from the true residual instead of the recursion of an earlier solve
-      {
-        start = previous->multipliers;
-        face.balance(start);
-        b = homogenised_load(dual, start);
-        ++solution.counts.hessian_multiplications;
-      }
-    const qp::Observer counted = [&](qp::OuterStep step) {
-      step.hessian_multiplications += 1 + solution.counts.hessian_multiplications; // F x~ in the homogenised load
-      step.outer += solution.counts.cg_steps;
-      if (observer)
-        observer({step, 0});
-    };
-    qp::PcpgOptions       pcpg              = options.pcpg;
-    const bool            is_preconditioned = dual.preconditioner() != nullptr;
-    bool                  reorthogonalizes  = is_preconditioned;
-    qp::PcpgStart<Vector> from{dual.zero()};
-    if (is_accurate) // stages continue with the directions of the previous ones
-      from.history = std::make_shared<qp::DirectionHistory<Vector>>(is_preconditioned);
-    double             tolerance = is_accurate ? std::max(first_asked, options.tolerance) : options.tolerance;
-    const TractionTest tractions(dual,
-                                 options.tolerance,
-                                 start.linfty_norm(),
-                                 previous ? previous->largest_traction : 0.);
-    const auto         are_tractions_accurate = [&](const Vector &residual) {
-      if (!tractions.has_pairs())
-        return true;
-      Vector error = dual.zero();
-      face.precondition(residual, error);
-      ++solution.counts.preconditioner_applications;
-      face.project_kernel(error);
-      return tractions.accepts(solution.multipliers, error);
-    };
-    if (tractions.has_pairs() && !from.history)
-      from.history = std::make_shared<qp::DirectionHistory<Vector>>(is_preconditioned);
-    bool has_met_goal = false;
-    for (;; tolerance = std::max(has_met_goal ? 0. : options.tolerance, part_of_residual * tolerance))
-      {
-        const qp::Goal goal(tolerance, reference);
-        auto           result = is_preconditioned ? qp::pcpg(face, b, from, goal, pcpg, precondition, counted)
-                                                  : qp::pcpg(face, b, from, goal, pcpg, qp::NoPreconditioner(), counted);
-        solution.counts += result.counts;
-        if (has_met_goal && result.status != qp::Status::converged) // the point that met the goal is at rounding level
-          break;
-        solution.status             = result.status;
-        solution.projected_gradient = result.relative_residual;
-        solution.multipliers        = start;
-        solution.multipliers += result.x;
-        if (result.status == qp::Status::stagnated && !reorthogonalizes)
-          { // rounding has destroyed the conjugacy of the directions
-            reorthogonalizes         = true;
-            pcpg.reorthogonalization = qp::Reorthogonalization::full;
-            from                     = {std::move(result.x)};
-            tolerance /= part_of_residual; // repeat the stage
-            continue;
-          }
-        if (result.status != qp::Status::converged)
-          break;
-        has_met_goal = tolerance <= options.tolerance;
-        if (has_met_goal)
-          {
-            if (tolerance <= options.newton.least_part * options.tolerance || are_tractions_accurate(result.residual))
-              break;
-          }
-        else
-          {
-            Vector jumps = std::move(result.residual);
-            jumps *= dual.norm();
-            if (is_accurate(solution, residual_energy(dual, jumps)))
-              break;
-          }
-        from.x       = std::move(result.x);
-        from.product = std::move(result.product);
-      }
-    ++solution.counts.hessian_multiplications; // F x~ in the homogenised load
-    solution.counts.outer_iterations = 1;
-    solution.largest_traction        = tractions.largest(solution.multipliers);
-    return solution;
+    return LinearSolver(dual, options, observer, previous, is_accurate)();
   }
 } // namespace slipstick::contact

@@ -1,3 +1,4 @@
+#include <slipstick/contact/linear.h>
 #include <slipstick/contact/refinement.h>
 #include <slipstick/qp/face_solver.h>
 #include <slipstick/qp/pcpg.h>
@@ -108,18 +109,11 @@ namespace slipstick::contact
                              const DualSolution           *start,
                              const AccuracyTest           &is_accurate)
   {
-    auto       solution  = solve(dual, law, options, friction, observer, start, is_accurate);
-    const auto reference = [&dual] { // |P (d - F x~)|, as in the solvers
-      auto x = dual.particular(), b = dual.zero(), q = dual.zero();
-      dual.multiply(x, b);
-      b.sadd(-1., 1. / dual.norm(), dual.d());
-      dual.project_range(b, q);
-      b -= q;
-      return b.l2_norm();
-    };
+    auto solution = solve(dual, law, options, friction, observer, start, is_accurate);
     if (!dual.is_approximate() || is_accurate || solution.status != qp::Status::converged)
       return solution;
-    const double norm = solution.reference > 0 ? solution.reference : reference();
+    const double norm =
+      solution.reference > 0 ? solution.reference : homogenised_load(dual, dual.particular()).l2_norm();
     for (unsigned int correction = 0;; ++correction)
       {
         const double change = norm > 0 ? dual.refine(solution.multipliers) / norm : 0.;

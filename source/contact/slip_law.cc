@@ -5,6 +5,7 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <map>
 
 namespace slipstick::contact
 {
@@ -40,6 +41,35 @@ namespace slipstick::contact
     return box;
   }
 
+  namespace
+  {
+    /// The law of a node that one or several pairs share, with the pressure that is the same for all of them.
+    /// @param acts_when_open becomes whether all laws with friction do.
+    template <int dim>
+    qp::NodeSet sum_of_laws(const scene::Scene<dim>                        &scene,
+                            const std::vector<const tfeti::ContactPoint *> &parts,
+                            const double                                    t,
+                            bool                                           &acts_when_open)
+    {
+      dealii::Point<dim> x;
+      for (unsigned int d = 0; d < dim; ++d)
+        x[d] = parts[0]->position[d];
+      qp::NodeSet sum{0, 0, 0};
+      for (const auto *part : parts)
+        {
+          const auto &pair = scene.contacts[part->pair];
+          if (!pair.law.has_friction)
+            continue;
+          const auto forces = pair.law.admissible_forces(x, t, part->area, pair.name);
+          sum.fixed += forces.fixed;
+          sum.coefficient += part->share * forces.coefficient;
+          sum.cap += forces.cap;
+          acts_when_open = acts_when_open && pair.law.acts_when_open;
+        }
+      return sum;
+    }
+  } // namespace
+
   SlipLaw::SlipLaw(std::vector<double> fixed_bounds)
     : fixed(std::move(fixed_bounds))
   {}
@@ -48,17 +78,23 @@ namespace slipstick::contact
   SlipLaw::SlipLaw(const scene::Scene<dim> &scene, const tfeti::DualProblem &dual, const double t)
     : fixed(dual.constraints().kind.size(), 0.)
   {
+    std::map<unsigned int, std::vector<const tfeti::ContactPoint *>> shared; // by carrier
+    for (const auto &part : dual.constraints().shared_points)
+      if (!part.is_bonded)
+        shared[part.carrier].push_back(&part.point);
     collectively(dual.communicator(), [&] {
-      for (const auto &point : dual.constraints().contact_points)
+      const auto &points = dual.constraints().contact_points;
+      for (unsigned int i = 0; i < points.size(); ++i)
         {
+          const auto &point = points[i];
           if (point.tangential_row == tfeti::invalid_row)
             continue;
-          dealii::Point<dim> x;
-          for (unsigned int d = 0; d < dim; ++d)
-            x[d] = point.position[d];
-          const auto &pair   = scene.contacts[point.pair];
-          const auto  forces = pair.law.admissible_forces(x, t, point.area, pair.name);
-          if (pair.law.acts_when_open || point.normal_row == tfeti::invalid_row) // a support takes the normal force
+          std::vector<const tfeti::ContactPoint *> parts{&point};
+          if (const auto found = shared.find(i); found != shared.end())
+            parts.insert(parts.end(), found->second.begin(), found->second.end());
+          bool       acts_when_open = true;
+          const auto forces         = sum_of_laws(scene, parts, t, acts_when_open);
+          if (acts_when_open || point.normal_row == tfeti::invalid_row) // a support takes the normal force
             {
               fixed[point.tangential_row] = forces.closed_radius(0);
               if (point.second_row == tfeti::invalid_row)

@@ -36,7 +36,9 @@ namespace slipstick::interface
 
     double degrees(const double cosine)
     {
-      return std::acos(std::min(1., std::max(-1., cosine))) * 180 / dealii::numbers::PI;
+      constexpr double resolution = 1e-3;
+      const double     angle      = std::acos(std::min(1., std::max(-1., cosine))) * 180 / dealii::numbers::PI;
+      return std::round(angle / resolution) * resolution;
     }
 
     /// Whether any point of a side is inside the body with the outline.
@@ -300,6 +302,14 @@ namespace slipstick::interface
                  "an element, so that no node has contact",
                  reach),
         "raise " + reach_of(scene, pair) + ", or refine the sides there");
+    if (*distance <= reach)
+      throw InputError(
+        between(scene, pair) +
+          format(" are only %g mm apart, but do not lie opposite each other: no normal of the slave hits "
+                 "the master within the reach of %g mm",
+                 *distance,
+                 reach),
+        "move the bodies until the sides overlap, or exchange slave and master");
     throw InputError(between(scene, pair) +
                        format(" do not meet within the reach of %g mm along the normals of the slave; "
                               "where they face each other they are %g mm apart",

@@ -2,6 +2,7 @@
 #include <slipstick/interface/gap_rotation.h>
 #include <slipstick/interface/held_contact.h>
 #include <slipstick/interface/row_builder.h>
+#include <slipstick/interface/shared_points.h>
 #include <slipstick/tfeti/dense.h>
 
 #include <algorithm>
@@ -39,9 +40,9 @@ namespace slipstick::interface
     /// v minus its component along w.
     std::map<unsigned int, double> without(std::map<unsigned int, double> v, const std::map<unsigned int, double> &w)
     {
-      const double part = product(v, w);
+      const double factor = product(v, w) / product(w, w);
       for (const auto &[i, value] : w)
-        v[i] -= part / (norm(w) * norm(w)) * value;
+        v[i] -= factor * value;
       return v;
     }
 
@@ -139,7 +140,6 @@ namespace slipstick::interface
       {
         for (const auto &copy : node.copies)
           entries.push_back({n_interface, copy.first, copy.second * dim + c, 1., false});
-        constraints.interface_held.push_back(node.is_acted_on());
         ++n_interface;
       }
   }
@@ -330,6 +330,9 @@ namespace slipstick::interface
     auto        touching = touches.of(i);
     const auto &key      = nodes[i].key;
     const auto  is_free  = [](const Vector &left) { return norm(left) > held_direction_tolerance; };
+    const std::function<bool(const ContactCandidate<dim> &)> is_kept = [this, i](const ContactCandidate<dim> &bond) {
+      return kept_bonds.count(std::array<unsigned int, 4>{{i, bond.pair, bond.side, 0}}) > 0;
+    };
     for (ContactCandidate<dim> &touch : touching)
       if (scene.contacts[touch.pair].law.is_bonded)
         {
@@ -346,14 +349,12 @@ namespace slipstick::interface
               ++constraints.counts.gluing;
             }
           if (touch.point.normal_row != tfeti::invalid_row)
-            add_areas_of_implied_bonds(i, touching, touch);
+            share_bond(scene, is_kept, touching, touch, constraints);
           if (touch.point.normal_row != tfeti::invalid_row || touch.point.tangential_row != tfeti::invalid_row)
             constraints.bonded_points.push_back(touch.point);
         }
-    for (ContactCandidate<dim> &touch : touching)
+    for (ContactCandidate<dim> &touch : contacts_beside_bonds(std::move(touching)))
       {
-        if (scene.contacts[touch.pair].law.is_bonded)
-          continue;
         const auto normal     = jump(touch, touch.normal);
         const auto left       = bonds.reduce(free_part(normal));
         const bool has_normal = is_free(left);
@@ -391,29 +392,35 @@ namespace slipstick::interface
         else
           held.points.back().place = constraints.contact_points.size();
         ++constraints.counts.candidates;
+        share_contact(scene, nodes[i].point(), t, touch, constraints);
         constraints.contact_points.push_back(touch.point);
       }
   }
 
-  // Where pairs meet at a node, the force of a bond is that of the implied ones, too. Its tractions are therefore
-  // relative to the areas of all of them that face the same way.
+  // Contacts that supports or bonds imply count for each pair by itself.
   template <int dim>
-  void RowBuilder<dim>::add_areas_of_implied_bonds(const unsigned int                        i,
-                                                   const std::vector<ContactCandidate<dim>> &touching,
-                                                   ContactCandidate<dim>                    &kept) const
+  std::vector<ContactCandidate<dim>> RowBuilder<dim>::contacts_beside_bonds(
+    std::vector<ContactCandidate<dim>> touching) const
   {
-    constexpr double same_way = 0.7; // least cosine: within 45 degrees
-    auto            &point    = kept.point;
-    double           area = point.area, length = point.length;
-    for (const ContactCandidate<dim> &other : touching)
-      if (scene.contacts[other.pair].law.is_bonded && other.normal * kept.normal > same_way &&
-          kept_bonds.count(std::array<unsigned int, 4>{{i, other.pair, other.side, 0}}) == 0)
-        {
-          area += other.point.area;
-          length += other.point.length;
-        }
-    point.traction_area   = std::max(point.traction_area, area);
-    point.traction_length = std::max(point.traction_length, length);
+    std::vector<ContactCandidate<dim>> result;
+    for (ContactCandidate<dim> &touch : touching)
+      {
+        if (scene.contacts[touch.pair].law.is_bonded || touch.is_implied)
+          continue;
+        if (touch.parts.empty() || norm(bonds.reduce(free_part(jump(touch, touch.normal)))) > held_direction_tolerance)
+          {
+            result.push_back(std::move(touch));
+            continue;
+          }
+        bool has_tangent = false; // of an earlier part
+        for (ContactCandidate<dim> &part : touch.parts)
+          {
+            part.has_tangent = part.has_tangent && !has_tangent;
+            has_tangent      = has_tangent || part.has_tangent;
+            result.push_back(std::move(part));
+          }
+      }
+    return result;
   }
 
   template <int dim>
@@ -507,8 +514,15 @@ namespace slipstick::interface
   template <int dim>
   void RowBuilder<dim>::add_bonds_to_obstacles(const unsigned int i)
   {
-    for (const auto &touch : touches.bonds_to_obstacles(i))
+    for (auto &touch : touches.bonds_to_obstacles(i))
       {
+        for (const auto &other : touches.of(i)) // the bond bears the force of the contact with the same obstacle, too
+          if (!scene.contacts[other.pair].law.is_bonded && !scene.contacts[other.pair].master &&
+              scene.contacts[other.pair].obstacle == scene.contacts[touch.pair].obstacle)
+            {
+              touch.point.traction_area += other.point.traction_area;
+              touch.point.traction_length += other.point.traction_length;
+            }
         add_held(i, touch, jump(touch, touch.normal));
         held.points.back().is_bonded = true;
         held.points.back().holder    = scene.supports.size() + scene.foundations.size() + touch.pair;
@@ -518,7 +532,11 @@ namespace slipstick::interface
   template <int dim>
   bool RowBuilder<dim>::is_pruned(const ContactCandidate<dim> &touch) const
   {
-    return touch.point.gap > limits[touch.pair] && scene.contacts[touch.pair].law.acts_where_closed_alone();
+    const auto is_beyond = [this, &touch](const unsigned int pair) {
+      return touch.point.gap > limits[pair] && scene.contacts[pair].law.acts_where_closed_alone();
+    };
+    return is_beyond(touch.pair) &&
+           std::all_of(touch.parts.begin(), touch.parts.end(), [&](const auto &part) { return is_beyond(part.pair); });
   }
 
   template <int dim>

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
 
 namespace slipstick::interface
 {
@@ -63,9 +64,24 @@ namespace slipstick::interface
   }
 
   template <int dim>
+  bool have_same_nodes(const ContactCandidate<dim> &a, const ContactCandidate<dim> &b)
+  {
+    constexpr double rounding = 1e-9; // of weights, which are of order 1
+    const auto       are_same = [](const auto &side, const auto &other) {
+      std::map<unsigned int, double> difference(side.begin(), side.end());
+      for (const auto &[node, weight] : other)
+        difference[node] -= weight;
+      return std::all_of(difference.begin(), difference.end(), [](const auto &entry) {
+        return std::abs(entry.second) <= rounding;
+      });
+    };
+    return a.normal * b.normal > same_way && are_same(a.slave, b.slave) && are_same(a.master, b.master);
+  }
+
+  template <int dim>
   std::vector<ContactCandidate<dim>> Touches<dim>::of(const unsigned int i) const
   {
-    auto touches = nearest_of(i);
+    auto touches = nearest(merged(i, candidates(i)));
     for (unsigned int a = 0; a < touches.size(); ++a)
       for (unsigned int b = 0; b < a; ++b)
         if (touches[a].has_tangent && touches[b].has_tangent && touches[a].master == touches[b].master &&
@@ -75,7 +91,7 @@ namespace slipstick::interface
   }
 
   template <int dim>
-  std::vector<ContactCandidate<dim>> Touches<dim>::nearest_of(const unsigned int i) const
+  std::vector<ContactCandidate<dim>> Touches<dim>::candidates(const unsigned int i) const
   {
     const auto                        &node = nodes[i];
     std::vector<ContactCandidate<dim>> touches;
@@ -87,7 +103,63 @@ namespace slipstick::interface
         touches.push_back(touch_body(i, pair, *row));
     for (auto &touch : touches)
       complete(i, touch);
-    // of obstacles in the same direction only the nearest counts
+    return touches;
+  }
+
+  // The sum of the areas of both pairs bears the force, and the smaller gap counts.
+  template <int dim>
+  std::vector<ContactCandidate<dim>> Touches<dim>::merged(const unsigned int                 i,
+                                                          std::vector<ContactCandidate<dim>> touches) const
+  {
+    const auto meet = [this](const ContactCandidate<dim> &a, const ContactCandidate<dim> &b) {
+      const auto &first = scene.contacts[a.pair], &second = scene.contacts[b.pair];
+      return a.pair != b.pair && !first.law.is_bonded && !second.law.is_bonded &&
+             first.master.has_value() == second.master.has_value() &&
+             (first.master || first.obstacle == second.obstacle) && have_same_nodes(a, b);
+    };
+    std::vector<ContactCandidate<dim>> result;
+    for (auto &touch : touches)
+      {
+        const auto first =
+          std::find_if(result.begin(), result.end(), [&](const auto &other) { return meet(other, touch); });
+        if (first == result.end())
+          {
+            result.push_back(std::move(touch));
+            continue;
+          }
+        if (first->parts.empty())
+          first->parts = {*first};
+        first->parts.push_back(std::move(touch));
+      }
+    for (auto &touch : result)
+      if (!touch.parts.empty())
+        {
+          auto                  &point   = touch.point;
+          const bool             rotates = point.rotates;
+          dealii::Tensor<1, dim> normal;
+          point.traction_area = point.traction_length = 0;
+          for (const auto &part : touch.parts)
+            {
+              normal += part.point.traction_area * part.normal;
+              point.gap         = std::min(point.gap, part.point.gap);
+              point.is_measured = point.is_measured && part.point.is_measured;
+              point.traction_area += part.point.traction_area;
+              point.traction_length += part.point.traction_length;
+            }
+          if (normal.norm() > 0)
+            touch.normal = normal / normal.norm();
+          complete(i, touch);
+          for (const auto &part : touch.parts)
+            touch.has_tangent = touch.has_tangent || part.has_tangent;
+          point.rotates = rotates;
+        }
+    return result;
+  }
+
+  // Of obstacles in the same direction only the nearest counts.
+  template <int dim>
+  std::vector<ContactCandidate<dim>> Touches<dim>::nearest(const std::vector<ContactCandidate<dim>> &touches) const
+  {
     std::vector<ContactCandidate<dim>> kept;
     for (unsigned int a = 0; a < touches.size(); ++a)
       {
@@ -202,11 +274,10 @@ namespace slipstick::interface
   template <int dim>
   void Touches<dim>::complete(const unsigned int i, ContactCandidate<dim> &touch) const
   {
-    touch.point.pair          = touch.pair;
-    touch.point.slave_body    = nodes[i].body;
-    touch.point.key           = nodes[i].key;
-    touch.point.interface_dof = dim * i;
-    touch.has_tangent         = scene.contacts[touch.pair].law.has_tangential_row();
+    touch.point.pair       = touch.pair;
+    touch.point.slave_body = nodes[i].body;
+    touch.point.key        = nodes[i].key;
+    touch.has_tangent      = scene.contacts[touch.pair].law.has_tangential_row();
     for (unsigned int d = 0; d < dim; ++d)
       {
         touch.point.position[d] = nodes[i].position[d];
@@ -226,7 +297,7 @@ namespace slipstick::interface
   {
     std::vector<PairExtent> result(scene.contacts.size());
     for (unsigned int i = 0; i < nodes.size(); ++i)
-      for (const auto &touch : nearest_of(i))
+      for (const auto &touch : nearest(candidates(i)))
         {
           auto &extent = result[touch.pair];
           extent.gap   = std::min(extent.gap, touch.point.gap);
@@ -236,6 +307,8 @@ namespace slipstick::interface
     return result;
   }
 
+  template bool have_same_nodes(const ContactCandidate<2> &, const ContactCandidate<2> &);
+  template bool have_same_nodes(const ContactCandidate<3> &, const ContactCandidate<3> &);
   template class Touches<2>;
   template class Touches<3>;
 } // namespace slipstick::interface

@@ -48,6 +48,7 @@ namespace slipstick::mesh
   CellKey cell_key(std::vector<GlobalVertex> vertices)
   {
     CellKey key;
+    Assert(vertices.size() <= key.size(), dealii::ExcIndexRange(vertices.size(), 0, key.size() + 1));
     key.fill(std::numeric_limits<GlobalVertex>::max());
     std::sort(vertices.begin(), vertices.end());
     std::copy(vertices.begin(), vertices.end(), key.begin());

@@ -32,9 +32,10 @@ namespace slipstick::mesh
     constexpr double automatic_cells_per_subdomain_in_space = 1000;
 
     // If the number of subdomains is `auto`, bodies that only contact holds in some direction are cut so that subdomains
-    // are about this many times as long as thick, if their own slenderness is above the last number: doc/decisions/0133,
-    // for solids 0137.
-    constexpr double automatic_slenderness = 3, automatic_slenderness_in_space = 6, least_slenderness = 16;
+    // are about this many times as long as thick (doc/decisions/0133), in space also not shorter than this many times
+    // their width (0171), if their own length is above the last number of thicknesses.
+    constexpr double automatic_slenderness = 3, automatic_slenderness_in_space = 6, automatic_length_over_width = 2,
+                     least_slenderness = 16;
 
     // Limits for two bodies that probably have different units (m and mm: 1e3 in size, Pa and MPa: 1e6 in modulus):
     // ratio of the larger to the smaller size or modulus. Parts of one assembly differ less in size; steel and rubber
@@ -94,15 +95,18 @@ namespace slipstick::mesh
       return {boundary, content};
     }
 
-    /// Length over thickness of a long piece, from its outline and its area; 4 for a square.
-    double slenderness(const MeshPiece<2> &piece)
+    /// Number of subdomains that a piece should have because it is slender. Its length over its thickness follows from
+    /// its outline and its area; 4 for a square.
+    double slender_parts(const MeshPiece<2> &piece)
     {
       const auto [outline, area] = boundary_and_content(piece);
-      return outline * outline / (4 * area);
+      const double slenderness   = outline * outline / (4 * area);
+      return slenderness > least_slenderness ? std::ceil(slenderness / automatic_slenderness) : 1;
     }
 
-    /// Diameter over the thickness of a plate or half of that of a rod; 5 for a cube.
-    double slenderness(const MeshPiece<3> &piece)
+    /// The same in space, where the length is the diameter, the thickness that of a plate or half of that of a rod (5 for
+    /// a cube), and the width is half of the surface over the length.
+    double slender_parts(const MeshPiece<3> &piece)
     {
       const auto farthest_from = [&piece](const dealii::Point<3> &x) {
         return *std::max_element(piece.vertices.begin(), piece.vertices.end(), [&x](const auto &a, const auto &b) {
@@ -111,7 +115,12 @@ namespace slipstick::mesh
       };
       const auto end               = farthest_from(piece.vertices[0]);
       const auto [surface, volume] = boundary_and_content(piece);
-      return end.distance(farthest_from(end)) * surface / (2 * volume);
+      const double length          = end.distance(farthest_from(end));
+      const double slenderness = length * surface / (2 * volume), length_over_width = 2 * length * length / surface;
+      if (slenderness <= least_slenderness)
+        return 1;
+      return std::ceil(
+        std::min(slenderness / automatic_slenderness_in_space, length_over_width / automatic_length_over_width));
     }
 
     /// By body: whether only contact that may open or slip holds it in some direction.
@@ -350,12 +359,8 @@ namespace slipstick::mesh
         {
           const auto loose = held_by_contact(scene);
           for (unsigned int k = 0; k < wholes.size(); ++k)
-            if (const double slender = slenderness(wholes[k]); loose[wholes[k].body] && slender > least_slenderness)
-              shares[k] =
-                std::max<double>(shares[k],
-                                 std::min<double>(std::ceil(slender / (dim == 3 ? automatic_slenderness_in_space
-                                                                                : automatic_slenderness)),
-                                                  n_cells[k]));
+            if (loose[wholes[k].body])
+              shares[k] = std::max<double>(shares[k], std::min<double>(slender_parts(wholes[k]), n_cells[k]));
         }
 
       std::vector<MeshPiece<dim>>                                   pieces;

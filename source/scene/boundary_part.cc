@@ -14,10 +14,14 @@ namespace slipstick::scene
 
   BoundaryPart part_of_boundary(const std::string &boundary)
   {
-    const auto at = boundary.find(separator);
+    const auto at = (boundary + " ").find(separator);
     if (at == std::string::npos)
       return {trim(boundary), ""};
-    return {trim(boundary.substr(0, at)), trim(boundary.substr(at + separator.size()))};
+    const std::string condition = trim(boundary.substr(std::min(boundary.size(), at + separator.size())));
+    if (condition.empty())
+      throw InputError("boundary '" + boundary + "': there is no condition after 'where'",
+                       "write one, for example " + trim(boundary.substr(0, at)) + " where x<10, or leave 'where' out");
+    return {trim(boundary.substr(0, at)), condition};
   }
 
   std::string to_string(const BoundaryPart &part)

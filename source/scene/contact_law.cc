@@ -1,5 +1,6 @@
 #include <slipstick/base/exceptions.h>
 #include <slipstick/base/log.h>
+#include <slipstick/base/text.h>
 #include <slipstick/scene/contact_law.h>
 
 #include <algorithm>
@@ -40,7 +41,8 @@ namespace slipstick::scene
                 law.has_friction = law.acts_when_open = true;
                 law.fixed                             = numbers[0];
                 return law;
-              }};
+              },
+              true};
     }
 
     template <int dim>
@@ -67,13 +69,12 @@ namespace slipstick::scene
   {
     const double number = value.value(x, t);
     if (!(number >= 0 && std::isfinite(number)))
-      throw InputError(format("Contact %s/%s is %g%s at (%g, %g)",
+      throw InputError(format("Contact %s/%s is %g%s at %s",
                               pair.c_str(),
                               name.c_str(),
                               number,
                               unit == "-" ? "" : (" " + unit).c_str(),
-                              x[0],
-                              x[1]),
+                              point_text(x, dim).c_str()),
                        "it must be zero or positive everywhere on the slave boundary");
     return number;
   }

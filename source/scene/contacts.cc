@@ -34,12 +34,14 @@ namespace slipstick::scene
   template <int dim>
   void ContactLawSection<dim>::declare(dealii::ParameterHandler &prm)
   {
-    std::vector<std::string>  names, meanings;
+    std::vector<std::string>  names, meanings, acting_when_open;
     std::vector<LawParameter> parameters; // of all laws, with their meaning in each law
     for (const auto &kind : law_kinds<dim>())
       {
         names.push_back(kind.name);
         meanings.push_back(kind.name + (kind.meaning.empty() ? "" : " (" + kind.meaning + ")"));
+        if (kind.can_act_when_open)
+          acting_when_open.push_back(kind.name);
         for (const LawParameter &parameter : kind.parameters)
           {
             const auto found = std::find_if(parameters.begin(), parameters.end(), [&](const auto &other) {
@@ -68,7 +70,8 @@ namespace slipstick::scene
                acts_on,
                only_closed,
                Choices<bool>{{"boundary", false}, {"contact", true}},
-               "Tresca: on the whole slave boundary, open nodes included, or where it is in contact");
+               join_names(acting_when_open) +
+                 ": on the whole slave boundary, open nodes included, or where it is in contact");
     add_text(prm,
              "Offset",
              offset,
@@ -103,14 +106,18 @@ namespace slipstick::scene
   std::vector<std::string> ContactLawSection<dim>::without_effect(const Parameters  &parameters,
                                                                   const std::string &section) const
   {
-    std::map<std::string, std::vector<std::string>> laws{{acts_on, {"Tresca"}}}; // by parameter
+    std::map<std::string, std::vector<std::string>> laws; // by parameter
     std::map<std::string, std::string>              harmless{{acts_on, "boundary"}};
     for (const auto &kind : law_kinds<dim>())
-      for (const LawParameter &parameter : kind.parameters)
-        {
-          laws[parameter.name].push_back(kind.name);
-          harmless[parameter.name] = parameter.default_text.empty() ? "0" : parameter.default_text;
-        }
+      {
+        if (kind.can_act_when_open)
+          laws[acts_on].push_back(kind.name);
+        for (const LawParameter &parameter : kind.parameters)
+          {
+            laws[parameter.name].push_back(kind.name);
+            harmless[parameter.name] = parameter.default_text.empty() ? "0" : parameter.default_text;
+          }
+      }
     std::vector<std::string> warnings;
     for (const auto &[parameter, of_laws] : laws)
       {
@@ -215,7 +222,7 @@ namespace slipstick::scene
       {
         const Field<dim> number(reach, parameters.locate(section + "/Reach"));
         if (!number.is_constant() || !(number.value(dealii::Point<dim>(), 1) > 0))
-          throw parameters.error(section + "/Reach", "is no number > 0", "give a length in mm, or auto");
+          throw parameters.error(section + "/Reach", "is not a number > 0", "give a length in mm, or auto");
         pair.reach = number.value(dealii::Point<dim>(), 1);
       }
     return pair;

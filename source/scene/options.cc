@@ -286,7 +286,8 @@ namespace slipstick::scene
       text,
       "",
       "load factors t of the steps, in order; slip is measured from the end of the previous step",
-      "increasing numbers, separated by commas, or ranges FIRST:STEP:LAST such as 0:0.1:1",
+      format("increasing numbers, separated by commas, or ranges FIRST:STEP:LAST such as 0:0.1:1 of less than %g steps",
+             most_steps),
       [parse](const std::string &list) {
         const auto numbers = parse(list);
         return !numbers.empty() &&

@@ -88,12 +88,17 @@ namespace slipstick::scene
 
       std::string remedy = suggest_name(name, children_of(parent, true));
       for (const NamedKind &kind : kinds)
-        if (name.compare(0, kind.kind.size() + 1, kind.kind + " ") == 0)
+        if (name == kind.kind)
+          {
+            remedy = "give its name, as in '" + kind.kind + " NAME', one of those in " + kind.list;
+            break;
+          }
+        else if (name.compare(0, kind.kind.size() + 1, kind.kind + " ") == 0)
           {
             const std::string        own_name = name.substr(kind.kind.size() + 1);
             std::vector<std::string> declared;
             for (const std::string &section : children_of(parent, true))
-              if (section.compare(0, kind.kind.size() + 1, kind.kind + " ") == 0)
+              if (section.compare(0, kind.kind.size() + 1, kind.kind + " ") == 0 && section != "Contact search")
                 declared.push_back(section.substr(kind.kind.size() + 1));
             remedy = "declare it: set " + kind.list + " = " +
                      shortened(join_names(declared) + (declared.empty() ? "" : ", ") + own_name, longest_list);

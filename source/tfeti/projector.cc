@@ -237,7 +237,7 @@ namespace slipstick::tfeti
       gram.add(parts.data() + first_part[row], parts.data() + first_part[row + 1], weight);
     }
 
-    /// Elimination of the staying rows' part of G M G'; cached for one metric at a time.
+    /// Elimination of the staying rows' part of G Theta G'; cached for one metric at a time.
     const std::shared_ptr<const CoarseSolver::Elimination> &staying_part(const std::vector<double> &metric,
                                                                          const MPI_Comm             comm) const
     {
@@ -403,7 +403,7 @@ namespace slipstick::tfeti
       y.local_element(r) *= indicator.local_element(r);
   }
 
-  // y := T M T'y on the active rows
+  // y := T Theta T'y on the active rows
   void Projector::spread(DistributedVector &y) const
   {
     for (const qp::Tie &tie : ties)

@@ -187,7 +187,7 @@ class Robustness(unittest.TestCase):
         self.assertEqual(run('--output', directory, '--', case).status, 0)
         result = run(write(BLOCK, '...prm'))
         self.assertEqual(result.status, 2, result)
-        self.assertIn('gives no name to an output directory', result.stderr)
+        self.assertIn('no output directory can be named after the case file', result.stderr)
 
 
 if __name__ == '__main__':

@@ -622,6 +622,79 @@ class Resolution(unittest.TestCase):
         self.assertEqual(texts, [])
 
 
+class NeighbouringPairs(unittest.TestCase):
+    """A contact divided into two pairs, which meet at a node that both bodies have: the same answer as for one pair."""
+
+    def blocks(self, contacts, push='8.1', cells=('2, 2', '2, 2'), kinds=None, ranks=1):
+        return solve(scenes.box('blocks', plane_state='plane strain', Decomposition=NONE, materials={'elastic': STEEL},
+                                bodies={'low': {'Size': '20, 10', 'Cells': cells[0], 'Material': 'elastic'},
+                                        'up': {'Origin': '0, 10', 'Size': '20, 5', 'Cells': cells[1], 'Material': 'elastic'}},
+                                supports={'ground': {'Boundary': 'low/bottom', 'Displacement x': '0', 'Displacement y': '0'}},
+                                tractions={'load': {'Boundary': 'up/top', 'Pressure': '30', 'Traction x': push}},
+                                contacts=contacts, Solver={'Tolerance': '1e-10'}, **(kinds or {})), ranks=ranks)
+
+    def parts(self, left, right, master='low/top'):
+        return {name: {'Slave': 'up/bottom where ' + part, 'Master': master + ' where ' + part if '/' in master else master, **law}
+                for name, part, law in (('left', 'x<10', left), ('right', 'x>10', right))}
+
+    def assert_same(self, whole, parts, normal_force=600):
+        self.assertEqual((whole.status, parts.status), (0, 0), (whole, parts))
+        self.assertEqual(parts.summary['warnings'], [])
+        a, b = whole.summary['results'], parts.summary['results']
+        for name in ('max_displacement', 'strain_energy', 'max_von_mises'):
+            self.assertAlmostEqual(a[name] / b[name], 1, delta=1e-7)
+        for name in ('normal_force', 'tangential_force', 'contact_length'):
+            self.assertAlmostEqual(sum(pair[name] for pair in b['contact']) / a['contact'][0][name], 1, delta=1e-7)
+        self.assertAlmostEqual(max(pair['max_pressure'] for pair in b['contact']) / a['contact'][0]['max_pressure'], 1, delta=1e-7)
+        for name in ('pressure_norm', 'traction_norm'):
+            self.assertAlmostEqual(sum(pair[name]**2 for pair in b['contact']) / a['contact'][0][name]**2, 1, delta=1e-7)
+
+    def test_friction_of_both(self):
+        laws = {'Coulomb': {'Friction coefficient': '0.3'}, 'Tresca': {'Slip bound': '9'},
+                'cohesion': {'Cohesion': '3', 'Friction coefficient': '0.2', 'Shear limit': '20'}}
+        for name, numbers in laws.items():
+            law = {'Law': name, **numbers}
+            for cells in (('2, 2', '2, 2'), ('6, 2', '8, 2')):
+                with self.subTest(law=name, cells=cells):
+                    whole = {'whole': {'Slave': 'up/bottom', 'Master': 'low/top', **law}}
+                    self.assert_same(self.blocks(whole, cells=cells), self.blocks(self.parts(law, law), cells=cells, ranks=2))
+
+    def test_on_an_obstacle(self):
+        law = {'Law': 'Coulomb', 'Friction coefficient': '0.3'}
+        floor = {'obstacles': {'floor': {'Shape': 'half plane', 'Point': '0, 10', 'Normal': '0, 1'}},
+                 'supports': {}, 'bodies': {'up': {'Origin': '0, 10', 'Size': '20, 5', 'Cells': '2, 2', 'Material': 'elastic'}}}
+        def on_floor(contacts):
+            return solve(scenes.box('floor', plane_state='plane strain', Decomposition=NONE, materials={'elastic': STEEL},
+                                    tractions={'load': {'Boundary': 'up/top', 'Pressure': '30', 'Traction x': '8.1'}},
+                                    contacts=contacts, Solver={'Tolerance': '1e-10'}, **floor))
+        self.assert_same(on_floor({'whole': {'Slave': 'up/bottom', 'Master': 'floor', **law}}),
+                         on_floor(self.parts(law, law, 'floor')))
+
+    def test_friction_of_one(self):
+        """A node that is half frictionless bears half of the friction, which counts for the other pair."""
+        result = self.blocks(self.parts({'Law': 'frictionless'}, {'Law': 'Coulomb', 'Friction coefficient': '0.3'}), '1')
+        self.assertEqual(result.status, 0, result)
+        left, right = result.summary['results']['contact']
+        self.assertEqual(left['tangential_force'], 0)
+        self.assertAlmostEqual(right['tangential_force'], -20, delta=1e-6)
+        rows = [row for row in result.contact if row['x'] == 10]
+        self.assertEqual([row['pair'] for row in rows], ['left', 'right'])
+        self.assertAlmostEqual(rows[0]['pressure'] / rows[1]['pressure'], 1, delta=1e-12)
+        self.assertLessEqual(abs(rows[1]['tangential_traction']), 0.3 * rows[1]['pressure'] * (1 + 1e-9))
+
+    def test_bond_beside_friction(self):
+        """The pressure of the common node is that of its neighbours, in both pairs."""
+        result = self.blocks(self.parts({'Law': 'bonded'}, {'Law': 'Coulomb', 'Friction coefficient': '0.3'}), '0', ('20, 5', '20, 5'))
+        self.assertEqual(result.status, 0, result)
+        left, right = result.summary['results']['contact']
+        for pair in (left, right):
+            self.assertAlmostEqual(pair['normal_force'], 300, delta=1e-6)
+        pressures = {row['pair']: row['pressure'] for row in result.contact if row['x'] == 10}
+        self.assertAlmostEqual(pressures['left'] / pressures['right'], 1, delta=1e-12)
+        beside = [row['pressure'] for row in result.contact if row['x'] in (9, 11)]
+        self.assertAlmostEqual(pressures['left'] / beside[0], 1, delta=0.02)
+
+
 class DisplacedForces(unittest.TestCase):
     """Forces in balance on the undeformed body, but not where the displacements take them."""
 

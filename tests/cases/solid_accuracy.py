@@ -147,7 +147,7 @@ class SolidAccuracy(Solids):
         result = self.stopped({**COARSE, 'Accuracy': '1 %', 'Adaptivity/Max meshes': 2})
         self.assertIn('Adaptivity/Max meshes', result.stderr)
         result = self.stopped({**COARSE, 'Accuracy': '1 %', 'Adaptivity/Max unknowns': 9000})
-        self.assertIn('allowed are 9000', result.stderr)
+        self.assertIn('the limit is 9000', result.stderr)
 
     def stopped(self, overrides):
         result = solve(CUBE, overrides)

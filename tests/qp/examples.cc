@@ -1,6 +1,7 @@
 // Tests made of the examples in the headers by extract_examples.py.
 #include "faced_problem.h"
 
+#include <slipstick/qp/face_solver.h>
 #include <slipstick/qp/feasible_point.h>
 #include <slipstick/qp/mpgp.h>
 #include <slipstick/qp/pcpg.h>

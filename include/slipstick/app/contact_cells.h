@@ -6,6 +6,7 @@
 #include <slipstick/mesh/mesh.h>
 #include <slipstick/scene/scene.h>
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,14 @@ namespace slipstick::app
                                   const std::vector<contact::ContactNode> &nodes,
                                   const std::vector<std::string>          &goals,
                                   mesh::Refinement                        &refinement);
+
+  /// Warnings for pairs whose slave is much stiffer than the master and finer: its nodes between two master nodes follow
+  /// the master's edges, so that pressures and tractions alternate and their status is decided by the small strains of
+  /// the stiff side, which takes the solver many steps. Keys are "finer" and the name of the pair. Collective.
+  template <int dim>
+  std::map<std::string, std::string> finer_slave_warnings(const scene::Scene<dim>  &scene,
+                                                          const mesh::Mesh<dim>    &mesh,
+                                                          const tfeti::Constraints &constraints);
 
   /// Adds the cells of both sides to @p refinement that have a face at a closed node of these pairs. Collective.
   /// @param nodes of all ranks, on rank 0. @return number of cells added.

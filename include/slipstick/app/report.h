@@ -16,11 +16,16 @@ namespace slipstick::app
                   const scene::Scene<dim>      &scene,
                   const mesh::Mesh<dim>        &mesh,
                   const mechanics::Spaces<dim> &spaces);
+
   /// @return the texts of the printed warnings, without "warning: ".
   template <int dim>
   std::vector<std::string> warnings_before(const scene::Scene<dim> &scene, const mesh::Mesh<dim> &mesh);
-  void                     print_constraints(const Log &log, const tfeti::Constraints &constraints);
-  void                     print_dual(const Log &log, const tfeti::DualProblem &dual);
+
+  /// Prints the numbers of multipliers by kind.
+  void print_constraints(const Log &log, const tfeti::Constraints &constraints);
+
+  /// Prints the form of the dual operator and its norm.
+  void print_dual(const Log &log, const tfeti::DualProblem &dual);
 
   /// Prints the checks computed from the recovered displacement.
   void print_checks(const Log &log, const contact::Checks &checks, const double tolerance);

@@ -20,9 +20,10 @@ namespace slipstick::app
   struct RunState
   {
     StepState                        solver;
-    output::Summary                  summary;       // of the steps so far
-    std::vector<output::ContactStep> contact_steps; // rank 0
-    TotalSlip                        total_slip;    // rank 0
+    output::Summary                  summary;           // of the steps so far
+    std::vector<output::ContactStep> contact_steps;     // rank 0
+    TotalSlip                        total_slip;        // rank 0
+    double                           largest_force = 0; // of a contact pair, in all steps so far [N]
     std::vector<std::string>         warnings;
     std::set<std::string>            warned_about;
   };
@@ -36,7 +37,7 @@ namespace slipstick::app
                      const RunState                &state,
                      const MPI_Comm                 comm);
 
-  /// @throws InputError if there is nothing to resume, or if scene, mesh files, version or number of ranks differ from
+  /// @throws InputError if there is nothing to resume, or if scene, files of meshes and surfaces, version or number of ranks differ from
   /// those of the run. Load factors may differ after the completed steps. Collective.
   template <int dim>
   RunState read_restart(const output::OutputDirectory &directory, const scene::Scene<dim> &scene, const MPI_Comm comm);

@@ -170,8 +170,9 @@ namespace slipstick::app
 
     std::unique_ptr<StepSolution> checked(std::unique_ptr<StepSolution> answer, const double t) const;
 
-    /// Continues from a solution whose checks fail, to smaller residuals: the tolerance is relative to |Pd|, which may
-    /// be far above the corresponding part of the displacement (slender parts). Ends when this no longer helps.
+    /// Continues to smaller residuals from a solution whose checks fail (the tolerance is relative to |Pd|, which may be
+    /// far above the corresponding part of the displacement of slender parts), or whose tractions have a large estimated
+    /// error (small forces may decide what sticks and slips). Ends when this no longer helps.
     std::unique_ptr<StepSolution> continue_to_smaller_residual(const unsigned int            step,
                                                                const std::uint64_t           multiplications_before,
                                                                std::unique_ptr<StepSolution> answer);

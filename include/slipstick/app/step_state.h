@@ -12,13 +12,13 @@ namespace slipstick::app
   /// State of one rank after a step; together with the scene it determines the next step completely.
   struct StepState
   {
-    double                              kept_part    = 0;       // of the contact nodes, see StepSolver
-    double                              largest_load = 0;       // of the steps so far [N]
-    double                              built_at     = 0;       // load factor of the rows, see StepProblem
-    contact::History                    history;                // of the steps so far
-    std::vector<output::ConvergenceRow> rows;                   // of convergence.csv
-    std::vector<std::uint64_t>          labels;                 // of the owned rows
-    std::vector<double>                 multipliers;            // of the owned rows [N]
+    double           kept_part    = 0;               // of the length of slave boundaries, see StepProblem::kept_part()
+    double           largest_load = 0;               // of the steps so far [N]
+    double           built_at     = 0;               // load factor of the rows, see StepProblem
+    contact::History history;                        // of the steps so far
+    std::vector<output::ConvergenceRow> rows;        // of convergence.csv
+    std::vector<std::uint64_t>          labels;      // of the owned rows
+    std::vector<double>                 multipliers; // of the owned rows [N]
     bool                                has_gradient = false;   // contact::DualSolution::gradient ...
     std::vector<double>                 gradient;               // ... of the owned rows [N]
     double                              reference          = 0; // as in contact::DualSolution

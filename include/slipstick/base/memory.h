@@ -14,11 +14,8 @@ namespace slipstick
   /// process.
   InputError out_of_memory();
 
-  /// Free memory of this machine in MB, limited by the control groups and resource limits of the @p n_ranks processes
-  /// of the run on it (for limited address spaces: the part not used by this process); infinite if none of this can be
-  /// read.
-  double free_memory_mb(const unsigned int n_ranks);
-
-  /// The share of this process in the free memory of its machine [MB]; infinite if nothing is known. Collective.
+  /// The share of this process in the free memory of its machine [MB], which control groups and resource limits may
+  /// restrict (of a limited address space: the part that this process does not use); infinite if none of this can be
+  /// read. Collective.
   double share_of_free_memory_mb(const MPI_Comm comm);
 } // namespace slipstick

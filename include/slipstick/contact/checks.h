@@ -60,7 +60,7 @@ namespace slipstick::contact
     std::pair<std::string, double> worst() const;
   };
 
-  /// The largest values of the previous load steps; values at rounding level count as zero.
+  /// The largest values of the previous load steps, the references below which values of a later step are negligible.
   struct History
   {
     double              displacement = 0;  // magnitude [mm]
@@ -83,8 +83,9 @@ namespace slipstick::contact
   /// @param u displacements of this rank's subdomains [mm].
   /// @param multipliers [N], in equilibrium with u, as returned by tfeti::recover.
   /// @param slip_bound of every owned row [N].
-  /// @param initial_strain_energies of this rank's bodies: contribution of initial strains that is added to u'K u to
-  /// give twice the strain energy [N mm]; empty: none.
+  /// @param history of the previous load steps.
+  /// @param initial_strain_energies by body: this rank's contribution of initial strains that is added to u'K u to give
+  /// twice the strain energy [N mm]; empty: none.
   /// @param free owned rows whose multiplier is strictly inside its bounds; this distinguishes closed from open and
   /// stick from slip.
   /// Collective.
@@ -95,6 +96,6 @@ namespace slipstick::contact
                        const std::vector<double>          &slip_bound,
                        const std::vector<bool>            &free,
                        const unsigned int                  n_bodies,
-                       const History                      &before                  = {},
+                       const History                      &history                 = {},
                        const std::vector<double>          &initial_strain_energies = {});
 } // namespace slipstick::contact

@@ -24,6 +24,9 @@ namespace slipstick::contact
                           const tfeti::DistributedVector &multipliers,
                           const tfeti::DistributedVector &jumps);
 
+  /// The part of a node's forces that belongs to the pair of @p point: @p whole if there is no other pair.
+  ContactNode part_of(const ContactNode &whole, const tfeti::ContactPoint &point);
+
   /// Results of all pairs, summed over the nodes of all ranks.
   std::vector<PairResult> pair_results(const std::vector<ContactNode> &nodes,
                                        const std::vector<std::string> &pair_names,

@@ -54,7 +54,7 @@ namespace slipstick::interface
     /// added to `pruned`.
     void limit_gaps(std::vector<double> limits);
 
-    /// Fills kind, c, compliance, label, contact points, reactions, interface_held and counts of the constraints.
+    /// Fills kind, c, compliance, label, contact points, reactions and counts of the constraints.
     void build();
 
     std::vector<RowEntry> entries;
@@ -72,10 +72,9 @@ namespace slipstick::interface
     void add(const unsigned int node);
 
     void add_contact(const unsigned int node);
-    void add_areas_of_implied_bonds(const unsigned int                        node,
-                                    const std::vector<ContactCandidate<dim>> &touching,
-                                    ContactCandidate<dim>                    &kept) const;
-    void find_bonds();
+    /// Without bonds and what they imply; candidates whose gap supports or bonds prescribe, in parts.
+    std::vector<ContactCandidate<dim>> contacts_beside_bonds(std::vector<ContactCandidate<dim>> touching) const;
+    void                               find_bonds();
     /// Of the jump along @p direction the part that supports do not prescribe, of each side relative to its size; that
     /// of the master counts by held_tangent / held_master.
     Vector free_sides(const ContactCandidate<dim> &touch, const Tensor &direction) const;

@@ -28,7 +28,16 @@ namespace slipstick::interface
     dealii::Tensor<1, dim>                       apart;         // slave point minus master point [mm]
     tfeti::ContactPoint                          point;
     bool                                         has_tangent = false;
+    bool                                         is_implied  = false; // by a bond with the same nodes
+    std::vector<ContactCandidate>                parts; // of pairs that meet there; empty if there is one pair only
   };
+
+  /// Smallest cosine of normals that face the same way: within 45 degrees.
+  constexpr double same_way = 0.7;
+
+  /// Whether both touch the same nodes with the same weights and face the same way.
+  template <int dim>
+  bool have_same_nodes(const ContactCandidate<dim> &a, const ContactCandidate<dim> &b);
 
   /// Of one contact pair: smallest gap, length of the slave boundary and number of its nodes.
   struct PairExtent
@@ -50,8 +59,9 @@ namespace slipstick::interface
             const BodyContacts<dim>               &contacts,
             double                                 t);
 
-    /// Candidates of the node, including bonds between bodies but not bonds to obstacles. Of those with the same nodes,
-    /// only the nearest has a tangent (e.g. at a corner of the slave boundary with the same master node on both sides).
+    /// Candidates of the node, including bonds between bodies but not bonds to obstacles. Contacts of two pairs with the
+    /// same nodes on both sides, or with the same obstacle, are one candidate. Of others with the same nodes, only the
+    /// nearest has a tangent (e.g. at a corner of the slave boundary with the same master node on both sides).
     std::vector<ContactCandidate<dim>> of(unsigned int node) const;
 
     /// Bonds of the node to obstacles.
@@ -65,7 +75,10 @@ namespace slipstick::interface
     std::vector<PairExtent> extents() const;
 
   private:
-    std::vector<ContactCandidate<dim>> nearest_of(unsigned int node) const;
+    std::vector<ContactCandidate<dim>> candidates(unsigned int node) const;
+    std::vector<ContactCandidate<dim>> merged(unsigned int node, std::vector<ContactCandidate<dim>> touches) const;
+    std::vector<ContactCandidate<dim>> nearest(const std::vector<ContactCandidate<dim>> &touches) const;
+
     /// Sets gap, normal and area; false beyond the Reach, and for nodes without area on the axis of revolution.
     bool                  place_on_obstacle(unsigned int           node,
                                             unsigned int           pair,

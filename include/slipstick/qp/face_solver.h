@@ -19,6 +19,22 @@
 namespace slipstick::qp
 {
   /// Solves a face with directions from the store, and adds new ones to it.
+  ///
+  /// @code
+  /// using namespace test; // FacedProblem: a dense problem with faces, tests/qp/faced_problem.h
+  /// Matrix G(1, 3);
+  /// G(0, 0) = G(0, 1) = G(0, 2) = std::sqrt(1. / 3);
+  /// const FacedProblem      problem(diagonal({1, 1, 1}), G, {0});
+  /// const auto              face = problem.face({true, true, false}, {}); // x_2 stays at its bound
+  /// DirectionStore<Vector>  store(10);
+  /// const auto              at_bound = [](const Vector &p) { return Vector{p[2]}; };
+  /// const FaceSolverOptions options;
+  /// const Vector            d{3, 1, 5}, x{-1, 0, 1}; // G x = 0
+  /// FaceSolver<Vector, FacedProblem::Face> solver(face, d, store, at_bound, options);
+  /// solver.start(x, problem.F * x);
+  /// const auto best = solver.solve_symmetric(1e-12);
+  /// assert(std::abs(best.x[0] - 0.5) < 1e-12 && std::abs(best.x[1] + 1.5) < 1e-12 && best.x[2] == 1);
+  /// @endcode
   template <typename Vector, typename Face>
   class FaceSolver
   {

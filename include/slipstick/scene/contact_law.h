@@ -31,6 +31,16 @@ namespace slipstick::scene
 
     std::optional<LawNumber<dim>> fixed, coefficient, cap; // of qp::NodeSet: [MPa] (none: 0), [-] (0), [MPa] (no cap)
 
+    /// The numbers that the law has.
+    std::vector<const LawNumber<dim> *> numbers() const
+    {
+      std::vector<const LawNumber<dim> *> all;
+      for (const auto *number : {&fixed, &coefficient, &cap})
+        if (*number)
+          all.push_back(&**number);
+      return all;
+    }
+
     /// Whether nodes have a tangential row.
     bool has_tangential_row() const
     {
@@ -66,6 +76,7 @@ namespace slipstick::scene
     std::string               name, meaning;
     std::vector<LawParameter> parameters;
     ContactLaw<dim> (*make)(const std::vector<std::optional<LawNumber<dim>>> &numbers);
+    bool can_act_when_open = false; // the parameter "Slip bound acts on" chooses
 
     /// @param numbers in the order of the parameters; no value for "none".
     ContactLaw<dim> law(const std::vector<std::optional<LawNumber<dim>>> &numbers) const;

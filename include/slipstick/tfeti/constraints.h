@@ -34,7 +34,7 @@ namespace slipstick::tfeti
 
   constexpr unsigned int invalid_row = static_cast<unsigned int>(-1);
 
-  /// A potential contact node. Its rows and interface unknowns are owned by the same rank.
+  /// A potential contact node. One rank owns all of its rows.
   struct ContactPoint
   {
     unsigned int          pair = 0; // index into Scene::contacts
@@ -42,13 +42,14 @@ namespace slipstick::tfeti
     std::array<double, 3> normal{{0, 0, 0}};  // outward normal of the slave body
     bool                  has_master = false; // true: another body; false: an obstacle
     unsigned int          slave_body = 0, master_body = 0;
-    std::array<double, 3> slave_position{{0, 0, 0}};  // where the force acts: mean of the slave nodes, or half the gap on
+    std::array<double, 3> slave_position{
+      {0, 0, 0}}; // where the force acts: mean of the slave nodes, or half the gap on
     std::array<double, 3> master_position{{0, 0, 0}}; // mean of the master nodes
     bool                  rotates = false; // its rows contain the rotations of both sides across the gap, so that the
                                            // forces on both sides have no moment
     double gap           = 0;              // reference configuration [mm]
     bool   is_measured   = false;          // whether the gap follows from positions of nodes alone
-    double area          = 0;              // tributary: length times thickness, or of revolution [mm^2]
+    double area          = 0;              // tributary of `pair`: length times thickness, or of revolution [mm^2]
     double length        = 0;              // tributary length [mm]
     double traction_area = 0;              // reference area of tractions: `area`, but at least half of the
                                            // node's full tributary area: the force on a sliver over the
@@ -59,13 +60,21 @@ namespace slipstick::tfeti
     unsigned int                         tangential_row = invalid_row;
     unsigned int                         second_row     = invalid_row; // in space: along the other tangent
     std::array<std::array<double, 3>, 2> tangents{};                   // in space
-    bool         is_held_across = false; // its law has friction, but supports let neither side slip
-    unsigned int interface_dof  = 0;     // owned number of the node's first interface unknown
+    bool   is_held_across = false;          // its law has friction, but supports let neither side slip
+    double share = 1, tangential_share = 1; // of its rows' forces that belong to `pair`; the rest to shared points
 
     bool is_in_space() const
     {
       return tangents[0] != std::array<double, 3>{{0, 0, 0}};
     }
+  };
+
+  /// The part that belongs to another pair of a point where two pairs meet at the same nodes.
+  struct SharedPoint
+  {
+    ContactPoint point;             // as the carrier's, but for pair, area, length and shares
+    unsigned int carrier   = 0;     // index into the contact points ...
+    bool         is_bonded = false; // ... or the bonded points
   };
 
   /// An external constraint of a node in one direction: support, foundation or bond to an obstacle.
@@ -111,11 +120,11 @@ namespace slipstick::tfeti
     std::vector<std::uint64_t>               label;      // of the owned rows; independent of the number of ranks
     std::vector<ContactPoint>                contact_points; // whose rows this rank owns
     std::vector<ContactPoint>                bonded_points;  // the same for bonded rows: normal and tangential
+    std::vector<SharedPoint>                 shared_points;  // of both
     std::vector<Reaction>                    reactions;      // whose rows this rank owns
     Partitioner                              interface_dofs;
     std::vector<std::vector<InterfaceEntry>> interface_blocks; // of the subdomains of this rank
-    std::vector<bool> interface_held; // owned unknowns: whether an external force acts (support, contact)
-    Counts            counts;         // over all ranks
+    Counts                                   counts;           // over all ranks
   };
 
   /// Contact nodes whose gap is prescribed by supports (and bonds), so that they have no normal row; also nodes bonded

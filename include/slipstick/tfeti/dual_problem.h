@@ -36,7 +36,6 @@ namespace slipstick::tfeti
   /// rows.label                      = {0, 1};
   /// rows.blocks                     = {{{0, 0, 1.}, {1, 1, 1.}}};
   /// rows.interface_blocks           = {{{0, 0}, {1, 1}}};
-  /// rows.interface_held             = {true, true};
   /// DualProblem dual(std::move(spring), rows, {}, {"spring"}, MPI_COMM_SELF);
   /// // both rows are closed: G x = e gives x_0 + x_1 = 100 N, the jumps give the rest
   /// DistributedVector x = dual.particular(); // x_0 = x_1 = 50 N
@@ -156,7 +155,7 @@ namespace slipstick::tfeti
       return dual_load;
     }
 
-    /// e = R'f of this rank's subdomains in turn.
+    /// e = R'f: resultants of the loads along the rigid motions of this rank's subdomains, one subdomain after another.
     const Eigen::VectorXd &e() const
     {
       return resultants;

@@ -11,9 +11,9 @@ namespace slipstick::tfeti
   /// Q = G'(G G')^-1 G projects dual vectors on the range of G'. With T from G G' = T^-1 T^-T the rows of T G are
   /// orthonormal; they are never computed, since |T G x| = |Q x|.
   ///
-  /// With a metric M (a positive number per row, the inverse of the row's compliance), "least" refers to that metric:
-  /// G'(G M G')^-1 G M projects residuals [mm], M G'(G M G')^-1 G projects multipliers [N]; each is the transpose of
-  /// the other. Corrections are then distributed over stiff and soft bodies according to their stiffnesses (Bhardwaj et
+  /// With a metric Theta (a positive number per row, the inverse of the row's compliance), "smallest" refers to it:
+  /// G'(G Theta G')^-1 G Theta projects residuals [mm], Theta G'(G Theta G')^-1 G projects multipliers [N]; each is the
+  /// transpose of the other. Corrections are then distributed over stiff and soft bodies according to their stiffnesses (Bhardwaj et
   /// al. 2000; Klawonn, Widlund 2001).
   class Projector
   {
@@ -50,17 +50,18 @@ namespace slipstick::tfeti
     /// As project_range(), but on all rows: y = G'a with the a that minimises x - G'a on the active rows. Collective.
     void extend_range(const DistributedVector &x, DistributedVector &y) const;
 
-    /// G x, the rigid motions of this rank's subdomains in turn; inactive rows count as zero. Collective.
+    /// G x: resultants along the rigid motions of this rank's subdomains, one subdomain after another [N]; inactive rows
+    /// count as zero. Collective.
     Eigen::VectorXd multiply(const DistributedVector &x) const;
 
-    /// The least y with G y = e, G'(G G')^-1 e without metric and ties. e: the rigid motions of this rank's subdomains
-    /// in turn. Collective.
+    /// The smallest y with G y = e, G'(G G')^-1 e without metric and ties. e: along the rigid motions of this rank's
+    /// subdomains, one subdomain after another. Collective.
     void particular(const Eigen::VectorXd &e, DistributedVector &y) const;
 
-    /// (G G')^-1 G x: amplitudes of the rigid motions of this rank's subdomains in turn. Collective.
+    /// (G G')^-1 G x: amplitudes of the rigid motions of this rank's subdomains, one after another. Collective.
     Eigen::VectorXd amplitudes(const DistributedVector &x) const;
 
-    /// (G G')^-1 a, on the rigid motions of this rank's subdomains in turn. Collective.
+    /// (G G')^-1 a, on the rigid motions of this rank's subdomains, one after another. Collective.
     Eigen::VectorXd solve(const Eigen::VectorXd &a) const;
 
     /// Number of rigid motions over all ranks.

@@ -140,7 +140,7 @@ namespace slipstick::tfeti
                           const unsigned int                                   n_bodies,
                           const MPI_Comm                                       comm);
 
-  /// Names the motion of the bodies that move most: "body box: translation along (1, 0)", "body a: rotation about (0,
+  /// Names the motions of all bodies that move noticeably: "body box: translation along (1, 0)", "body a: rotation about (0,
   /// 5)", "body pin: translation along the axis".
   std::string describe(const RigidMotion &motion, const std::vector<std::string> &body_names);
 

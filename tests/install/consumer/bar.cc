@@ -49,7 +49,6 @@ int main()
   rows.blocks           = {{{0, 0, 1.}, {1, n - 1, 1.}}, {{1, 0, -1.}, {2, n - 1, 1.}}};
   rows.interface_dofs   = std::make_shared<dealii::Utilities::MPI::Partitioner>(3);
   rows.interface_blocks = {{{0, 0}, {n - 1, 1}}, {{0, 1}, {n - 1, 2}}};
-  rows.interface_held   = {true, false, true};
   std::vector<tfeti::SubdomainMatrices> parts;
   parts.push_back(chain(0));
   parts.push_back(chain(1));
