@@ -294,6 +294,29 @@ namespace slipstick::contact
         result.checks.largest_force = largest_contact;
       }
 
+      /// What the law of a contact that a bond implies does not admit, the bond bears alone.
+      static void limit_to_law(const qp::NodeSet &forces, ContactNode &contact, ContactNode &bond)
+      {
+        const auto give = [&](double &of_contact, double &of_bond, const double part) {
+          of_bond += part * of_contact * contact.area / bond.area;
+          of_contact -= part * of_contact;
+        };
+        contact.is_closed  = contact.pressure >= 0;
+        contact.status     = contact.is_closed ? ContactStatus::stick : ContactStatus::open;
+        const double bound = contact.is_closed ? forces.radius(contact.pressure * contact.area) : 0.;
+        const double along = std::abs(contact.tangential_traction) * contact.area;
+        contact.slip_bound = bound / contact.area;
+        if (!contact.is_closed)
+          give(contact.pressure, bond.pressure, 1.);
+        if (along > bound)
+          {
+            const double part = 1 - bound / along;
+            give(contact.tangential_traction, bond.tangential_traction, part);
+            for (unsigned int d = 0; d < contact.traction.size(); ++d)
+              give(contact.traction[d], bond.traction[d], part);
+          }
+      }
+
       /// Nodes so far have the forces of all pairs that meet there: divides them, nodes of other pairs are added behind.
       void divide_shared_nodes()
       {
@@ -304,7 +327,11 @@ namespace slipstick::contact
           nodes[i] = part_of(whole[i], i < n ? constraints.contact_points[i] : constraints.bonded_points[i - n]);
         for (const auto &shared : constraints.shared_points)
           {
-            nodes.push_back(part_of(whole[shared.carrier + (shared.is_bonded ? n : 0)], shared.point));
+            const std::size_t carrier = shared.carrier + (shared.is_bonded ? n : 0);
+            auto              part    = part_of(whole[carrier], shared.point);
+            if (shared.law)
+              limit_to_law(*shared.law, part, nodes[carrier]);
+            nodes.push_back(part);
             result.keys.push_back(shared.point.key);
           }
       }

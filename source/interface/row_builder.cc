@@ -349,7 +349,7 @@ namespace slipstick::interface
               ++constraints.counts.gluing;
             }
           if (touch.point.normal_row != tfeti::invalid_row)
-            share_bond(scene, is_kept, touching, touch, constraints);
+            share_bond(scene, nodes[i].point(), t, is_kept, touching, touch, constraints);
           if (touch.point.normal_row != tfeti::invalid_row || touch.point.tangential_row != tfeti::invalid_row)
             constraints.bonded_points.push_back(touch.point);
         }

@@ -17,7 +17,7 @@ namespace slipstick::interface
                                     const double                 share,
                                     const double                 tangential_share)
     {
-      tfeti::SharedPoint shared{carrier, static_cast<unsigned int>(index), is_bonded};
+      tfeti::SharedPoint shared{carrier, static_cast<unsigned int>(index), is_bonded, {}};
       shared.point.pair             = part.pair;
       shared.point.area             = part.point.area;
       shared.point.length           = part.point.length;
@@ -29,6 +29,8 @@ namespace slipstick::interface
 
   template <int dim>
   void share_bond(const scene::Scene<dim>                                  &scene,
+                  const dealii::Point<dim>                                 &x,
+                  const double                                              t,
                   const std::function<bool(const ContactCandidate<dim> &)> &is_kept,
                   std::vector<ContactCandidate<dim>>                       &touching,
                   ContactCandidate<dim>                                    &kept,
@@ -62,8 +64,14 @@ namespace slipstick::interface
     for (const ContactCandidate<dim> *part : sharing)
       {
         const double share = part->point.area / area;
+        const auto  &pair  = scene.contacts[part->pair];
         point.share -= share;
-        constraints.shared_points.push_back(shared_point(point, index, true, *part, share, share));
+        auto shared = shared_point(point, index, true, *part, share, share);
+        if (pair.law.has_friction)
+          shared.law = pair.law.admissible_forces(x, t, part->point.area, pair.name);
+        else if (!pair.law.is_bonded)
+          shared.law = qp::NodeSet{0, 0, 0};
+        constraints.shared_points.push_back(std::move(shared));
       }
     point.tangential_share = point.share;
   }
@@ -102,11 +110,15 @@ namespace slipstick::interface
   }
 
   template void share_bond(const scene::Scene<2> &,
+                           const dealii::Point<2> &,
+                           const double,
                            const std::function<bool(const ContactCandidate<2> &)> &,
                            std::vector<ContactCandidate<2>> &,
                            ContactCandidate<2> &,
                            tfeti::Constraints &);
   template void share_bond(const scene::Scene<3> &,
+                           const dealii::Point<3> &,
+                           const double,
                            const std::function<bool(const ContactCandidate<3> &)> &,
                            std::vector<ContactCandidate<3>> &,
                            ContactCandidate<3> &,

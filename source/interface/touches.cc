@@ -20,6 +20,9 @@ namespace slipstick::interface
     // Geometric gaps below this fraction of the coordinates are rounding.
     constexpr double rounding_of_gaps = 16 * std::numeric_limits<double>::epsilon();
 
+    // Weights, which are of order 1, are equal if they differ by less.
+    constexpr double rounding_of_weights = 1e-9;
+
     // A row follows the rotations of both sides if no more than this part of the vector between its points does not.
     constexpr double rounding_of_spans = 1e-6;
 
@@ -66,13 +69,12 @@ namespace slipstick::interface
   template <int dim>
   bool have_same_nodes(const ContactCandidate<dim> &a, const ContactCandidate<dim> &b)
   {
-    constexpr double rounding = 1e-9; // of weights, which are of order 1
-    const auto       are_same = [](const auto &side, const auto &other) {
+    const auto are_same = [](const auto &side, const auto &other) {
       std::map<unsigned int, double> difference(side.begin(), side.end());
       for (const auto &[node, weight] : other)
         difference[node] -= weight;
       return std::all_of(difference.begin(), difference.end(), [](const auto &entry) {
-        return std::abs(entry.second) <= rounding;
+        return std::abs(entry.second) <= rounding_of_weights;
       });
     };
     return a.normal * b.normal > same_way && are_same(a.slave, b.slave) && are_same(a.master, b.master);

@@ -626,12 +626,13 @@ class NeighbouringPairs(unittest.TestCase):
     """A contact divided into two pairs, which meet at a node that both bodies have: the same answer as for one pair."""
 
     def blocks(self, contacts, push='8.1', cells=('2, 2', '2, 2'), kinds=None, ranks=1):
-        return solve(scenes.box('blocks', plane_state='plane strain', Decomposition=NONE, materials={'elastic': STEEL},
-                                bodies={'low': {'Size': '20, 10', 'Cells': cells[0], 'Material': 'elastic'},
-                                        'up': {'Origin': '0, 10', 'Size': '20, 5', 'Cells': cells[1], 'Material': 'elastic'}},
-                                supports={'ground': {'Boundary': 'low/bottom', 'Displacement x': '0', 'Displacement y': '0'}},
-                                tractions={'load': {'Boundary': 'up/top', 'Pressure': '30', 'Traction x': push}},
-                                contacts=contacts, Solver={'Tolerance': '1e-10'}, **(kinds or {})), ranks=ranks)
+        load = {'Boundary': 'up/top', 'Pressure': '30', 'Traction x': push}
+        return solve(scenes.box('blocks', **{
+            'plane_state': 'plane strain', 'Decomposition': NONE, 'materials': {'elastic': STEEL}, 'contacts': contacts,
+            'bodies': {'low': {'Size': '20, 10', 'Cells': cells[0], 'Material': 'elastic'},
+                       'up': {'Origin': '0, 10', 'Size': '20, 5', 'Cells': cells[1], 'Material': 'elastic'}},
+            'supports': {'ground': {'Boundary': 'low/bottom', 'Displacement x': '0', 'Displacement y': '0'}},
+            'tractions': {'load': load}, 'Solver': {'Tolerance': '1e-10'}, **(kinds or {})}), ranks=ranks)
 
     def parts(self, left, right, master='low/top'):
         return {name: {'Slave': 'up/bottom where ' + part, 'Master': master + ' where ' + part if '/' in master else master, **law}
@@ -691,6 +692,14 @@ class NeighbouringPairs(unittest.TestCase):
             self.assertAlmostEqual(pair['normal_force'], 300, delta=1e-6)
         pressures = {row['pair']: row['pressure'] for row in result.contact if row['x'] == 10}
         self.assertAlmostEqual(pressures['left'] / pressures['right'], 1, delta=1e-12)
+        pulled = self.blocks(self.parts({'Law': 'bonded'}, {'Law': 'Coulomb', 'Friction coefficient': '0.3'}), '0', ('20, 5', '20, 5'),
+                             {'tractions': {'load': {'Boundary': 'up/top where x>15', 'Traction y': '3'}}})
+        left_pulled, right_pulled = pulled.summary['results']['contact']
+        self.assertAlmostEqual(left_pulled['normal_force'], -15, delta=1e-6)  # the bond alone
+        self.assertEqual([right_pulled['normal_force'], right_pulled['tangential_force'], right_pulled['max_pressure']], [0, 0, 0])
+        for row in pulled.contact + result.contact:
+            if row['pair'] == 'right':
+                self.assertLessEqual(abs(row['tangential_traction']), 0.3 * row['pressure'] + 1e-9)
         beside = [row['pressure'] for row in result.contact if row['x'] in (9, 11)]
         self.assertAlmostEqual(pressures['left'] / beside[0], 1, delta=0.02)
 

@@ -3,11 +3,14 @@
 // Sign conventions of contact rows: see contact/result.h. A row reads b u = c (equality) or b u <= c (normal).
 #pragma once
 
+#include <slipstick/qp/node_set.h>
+
 #include <deal.II/base/partitioner.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <array>
 #include <memory>
+#include <optional>
 #include <vector>
 
 namespace slipstick::tfeti
@@ -72,9 +75,10 @@ namespace slipstick::tfeti
   /// The part that belongs to another pair of a point where two pairs meet at the same nodes.
   struct SharedPoint
   {
-    ContactPoint point;             // as the carrier's, but for pair, area, length and shares
-    unsigned int carrier   = 0;     // index into the contact points ...
-    bool         is_bonded = false; // ... or the bonded points
+    ContactPoint               point;             // as the carrier's, but for pair, area, length and shares
+    unsigned int               carrier   = 0;     // index into the contact points ...
+    bool                       is_bonded = false; // ... or the bonded points
+    std::optional<qp::NodeSet> law;               // of a contact that shares the force of a bond [N]
   };
 
   /// An external constraint of a node in one direction: support, foundation or bond to an obstacle.
