@@ -178,6 +178,25 @@ class Resumed(unittest.TestCase):
         self.assertIn('damaged', refused.stderr)
         self.assertTrue((directory / 'history.csv').is_file())
 
+    def test_other_surfaces(self):
+        surface = new_path('floor.stl')
+        a, b, c, d = '-60 0 60', '60 0 60', '0 0 -60', '0 -40 0'
+        surface.write_text('solid floor\n' + ''.join(
+            'facet normal 0 1 0\nouter loop\n{}endloop\nendfacet\n'.format(''.join('vertex {}\n'.format(x) for x in triangle))
+            for triangle in ((a, b, c), (a, d, b), (b, d, c), (c, d, a))) + 'endsolid floor\n')
+        lines = scenes.text(bodies={'box': {'Size': '10, 10, 10', 'Cells': '2, 2, 2', 'Material': 'elastic'}},
+                            obstacles={'floor': {'Shape': 'stl', 'File': str(surface)}},
+                            supports={'left': {'Boundary': 'box/left', 'Displacement x': '0', 'Displacement z': '0'}},
+                            tractions={'down': {'Boundary': 'box/top', 'Traction y': '-10 + 100*(t > 1.5)'}},
+                            contacts={'rest': {'Slave': 'box/bottom', 'Master': 'floor', 'Law': 'frictionless'}},
+                            Decomposition={'Method': 'none'}, **{'Load steps': {'Factors': '1, 2'}}).split('\n')
+        case = scenes.write('on_a_surface', '\n'.join(['set Dimension = 3'] + lines[1:]))
+        directory = self.stopped(case)
+        surface.write_text(surface.read_text().replace('0 -40 0', '0 -41 0'))
+        refused = run(case, '--resume', '--output', directory)
+        self.assertEqual(refused.status, 2, refused)
+        self.assertIn("floor.stl' has changed", refused.stderr)
+
 
 class Proportional(unittest.TestCase):
     """Directions of earlier steps are combined again and again: what rounding leaves of their G p grew from step to step, until
