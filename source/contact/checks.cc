@@ -320,6 +320,8 @@ namespace slipstick::contact
       /// Nodes so far have the forces of all pairs that meet there: divides them, nodes of other pairs are added behind.
       void divide_shared_nodes()
       {
+        if (constraints.shared_points.empty())
+          return;
         auto      &nodes = result.nodes;
         const auto whole = nodes;
         const auto n     = constraints.contact_points.size();

@@ -136,8 +136,7 @@ namespace slipstick::interface
     for (auto &touch : result)
       if (!touch.parts.empty())
         {
-          auto                  &point   = touch.point;
-          const bool             rotates = point.rotates;
+          auto                  &point = touch.point;
           dealii::Tensor<1, dim> normal;
           point.traction_area = point.traction_length = 0;
           for (const auto &part : touch.parts)
@@ -153,7 +152,6 @@ namespace slipstick::interface
           complete(i, touch);
           for (const auto &part : touch.parts)
             touch.has_tangent = touch.has_tangent || part.has_tangent;
-          point.rotates = rotates;
         }
     return result;
   }

@@ -705,6 +705,31 @@ class NeighbouringPairs(unittest.TestCase):
         self.assertAlmostEqual(pressures['left'] / beside[0], 1, delta=0.02)
 
 
+class Sides(unittest.TestCase):
+
+    def test_bonds_across_gaps(self):
+        texts = converged(shipped('hertz'), {'Contact touch/Law': 'bonded'}).summary['warnings']
+        self.assertEqual(len([text for text in texts if 'Contact touch: it bonds across a gap of ' in text]), 1, texts)
+
+    def test_slaves_that_are_finer_and_stiffer(self):
+        """Said before the solve; not where the sides are exchanged, or equally stiff."""
+        def said(slave, master, modulus):
+            steel, pad = {'Origin': '0, 10', 'Size': '20, 5', 'Cells': '30, 5'}, {'Size': '20, 10', 'Cells': '10, 5'}
+            case = scenes.box('pad', plane_state='plane strain', Decomposition=NONE,
+                              materials={'steel': STEEL, 'pad': {'Young modulus': modulus, 'Poisson ratio': '0.3'}},
+                              bodies={'steel': {**steel, 'Material': 'steel'}, 'pad': {**pad, 'Material': 'pad'}},
+                              supports={'ground': {'Boundary': 'pad/bottom', 'Displacement x': '0', 'Displacement y': '0'},
+                                        'guide': {'Boundary': 'steel/left', 'Displacement x': '0'}},
+                              tractions={'load': {'Boundary': 'steel/top', 'Pressure': '0.1'}},
+                              contacts={'c': {'Slave': slave, 'Master': master, 'Law': 'frictionless'}})
+            return [text for text in converged(case).summary['warnings'] if 'exchange Slave and Master' in text]
+
+        text = only(said('steel/bottom', 'pad/top', '20'))
+        self.assertRegex(text, r'\(2\.1e\+05 and 20 MPa\) and finer \(edges of 0\.6\d+ and 2 mm\)')
+        self.assertEqual(said('pad/top', 'steel/bottom', '20'), [])
+        self.assertEqual(said('steel/bottom', 'pad/top', '2e5'), [])
+
+
 class DisplacedForces(unittest.TestCase):
     """Forces in balance on the undeformed body, but not where the displacements take them."""
 

@@ -9,7 +9,8 @@ namespace slipstick::interface
 {
   /// The force of a bond is also that of bonds that it implies, and of contacts with the same nodes: its tractions are
   /// relative to the areas of all of them that face the same way. Those with the same nodes become shared points, with
-  /// parts of the force in proportion to their areas, as far as the laws of contacts admit these; contacts among them are marked as implied.
+  /// parts of the force in proportion to their areas, as far as the laws of contacts admit these; contacts among them are
+  /// marked as implied.
   /// @param is_kept whether a bond has a normal row. @param touching all candidates of the node of @p kept, which becomes
   /// the next of the bonded points.
   /// @throws InputError (on the calling rank) for a negative number of a law.
